@@ -1,0 +1,21 @@
+# OpenVDB ships a find module instead of a package configuration.
+find_path(OPENVDB_MODULE_DIR FindOpenVDB.cmake
+  PATHS /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB /usr/lib/cmake/OpenVDB /usr/local/lib/cmake/OpenVDB
+  REQUIRED)
+list(APPEND CMAKE_MODULE_PATH ${OPENVDB_MODULE_DIR})
+
+find_package(TBB REQUIRED)
+find_package(OpenVDB REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(HDF5 REQUIRED COMPONENTS C)
+find_package(yaml-cpp 0.7 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(CLI11 2.1 REQUIRED)
+find_package(FastFloat REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(zstd REQUIRED)
+
+# What the library links but its users need not know.
+set(GRAINVDB_PRIVATE_DEPENDENCIES
+  $<BUILD_INTERFACE:Eigen3::Eigen> hdf5::hdf5 $<BUILD_INTERFACE:yaml-cpp> $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>
+  $<BUILD_INTERFACE:FastFloat::fast_float> ZLIB::ZLIB $<BUILD_INTERFACE:zstd::libzstd_shared>)

@@ -1,0 +1,40 @@
+#pragma once
+/// The Lucy kernel (physics eq. 9): W(r) = 105/(16 π c³) (1-q)³ (1+3q), q = r/c < 1, else 0; ∫ W dV = 1.
+#include "grainvdb/box.hpp"
+
+namespace grainvdb {
+
+class LucyKernel {
+ public:
+  /// `cutoff` c > 0 is the radius of the support [length]. Throws std::invalid_argument otherwise.
+  explicit LucyKernel(double cutoff);
+
+  double cutoff() const { return cutoff_; }
+
+  /// W at distance² r2 [1/length³]. Evaluated in the factored form, which is never positive outside the support.
+  double value(double r2) const;
+
+  /// The factor f with ∇W = f r⃗ at distance² r2: f = -(1260/(16 π c⁵)) (1-q)² [1/length⁵].
+  double gradient_factor(double r2) const;
+
+  /// ∫₀¹ W(|p + s a|) ds, the mean of W along the straight branch from p to p + a, in closed form
+  /// (physics section 2), accurate to rounding for short branches and branches through the origin too [1/length³].
+  double line_integral(const Vec3& p, const Vec3& a) const;
+
+  /// The same by an n-point Gauss-Legendre rule, 1 ≤ n ≤ 8.
+  double line_integral_gauss(const Vec3& p, const Vec3& a, int n) const;
+
+  /// One-dimensional marginal ∫∫ W dx dy at distance z [1/length], and its integral from 0 to z [1].
+  double marginal(double z) const;
+  double marginal_integral(double z) const;
+
+  /// Fourier transform Ŵ(k), k = |wave vector| [1/length]; Ŵ(0) = 1.
+  double fourier(double k) const;
+
+ private:
+  double cutoff_;
+  double inverse_cutoff_;
+  double norm_;  // 105/(16 π c³)
+};
+
+}  // namespace grainvdb

@@ -1,0 +1,34 @@
+#pragma once
+/// What a pipeline's wanted outputs need, resolved backwards, so that nothing else is read, splatted or written.
+#include <string>
+#include <vector>
+
+#include "grainvdb/frame.hpp"
+#include "grainvdb/pipeline.hpp"
+#include "grainvdb/stage.hpp"
+
+namespace grainvdb {
+
+/// One sweep over the frames of a window.
+struct Sweep {
+  ColumnSet columns;                           ///< what is read
+  std::vector<std::vector<MomentPtr>> passes;  ///< the moments of each pass over a frame, in order
+};
+
+struct Plan {
+  std::vector<const Stage*> stages;   ///< in an order in which each finds its needs
+  std::vector<Sweep> sweeps;          ///< one, or two where a moment needs a time mean
+  std::vector<MomentPtr> means;       ///< the moments whose time means are kept
+  std::vector<std::string> not_needed;///< stages of the registry that this plan does not run
+};
+
+/// Throws ConfigError for an unknown field (with "did you mean"), for a cycle among stages (naming it), and for a kernel too
+/// narrow for a moment that interpolates to particles (c < √3 h).
+Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry = StageRegistry::standard());
+
+/// The plan in words, as `grainvdb graph` prints it.
+std::string describe(const Plan& plan, const Pipeline& pipeline);
+/// The plan as a Graphviz digraph.
+std::string describe_dot(const Plan& plan, const Pipeline& pipeline);
+
+}  // namespace grainvdb

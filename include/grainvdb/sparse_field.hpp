@@ -1,0 +1,56 @@
+#pragma once
+/// A named field on OpenVDB grids: one FloatGrid per component, all fields of a result on one topology.
+/// This header keeps OpenVDB out of the way; grids.hpp gives access to the grids themselves.
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "grainvdb/lattice.hpp"
+#include "grainvdb/topology.hpp"
+
+namespace grainvdb {
+
+/// What a field is, apart from its values.
+struct FieldMeta {
+  std::string name;         ///< as in the field table, e.g. "contact_stress"
+  std::string unit;         ///< e.g. "Pa"; "1" for pure numbers
+  int components = 1;       ///< 1, 3 (vector) or 9 (row-major tensor ij)
+  std::string description;  ///< one line
+  std::string equation;     ///< formula with its tag, e.g. "Σ V W (6)"
+  float background = 0.0F;  ///< value where no kernel reaches: 0 for sums such as phi, NaN for ratios such as velocity
+};
+
+class SparseField {
+ public:
+  /// All values start at the background.
+  SparseField(FieldMeta meta, std::shared_ptr<const Topology> topology, const Lattice& lattice);
+  ~SparseField();
+  SparseField(SparseField&&) noexcept;
+  SparseField& operator=(SparseField&&) noexcept;
+
+  const FieldMeta& meta() const { return meta_; }
+  const std::shared_ptr<const Topology>& topology() const { return topology_; }
+  int components() const { return meta_.components; }
+
+  /// The 512 values of a component in a leaf, in OpenVDB's order (see leaf_offset).
+  float* leaf(std::size_t leaf, int component = 0) { return leaves_[leaf * components_() + static_cast<std::size_t>(component)]; }
+  const float* leaf(std::size_t leaf, int component = 0) const {
+    return leaves_[leaf * components_() + static_cast<std::size_t>(component)];
+  }
+  /// The value at a voxel, the background outside the topology. For tests and look-ups, not for loops.
+  float value(const Coord& c, int component = 0) const;
+
+  /// Owner of the OpenVDB grids; see grids.hpp.
+  struct Grids;
+  const Grids& grids() const { return *grids_; }
+
+ private:
+  std::size_t components_() const { return static_cast<std::size_t>(meta_.components); }
+  FieldMeta meta_;
+  std::shared_ptr<const Topology> topology_;
+  std::unique_ptr<Grids> grids_;
+  std::vector<float*> leaves_;
+};
+
+}  // namespace grainvdb

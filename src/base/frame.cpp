@@ -1,0 +1,18 @@
+#include "grainvdb/frame.hpp"
+
+#include <utility>
+
+namespace grainvdb {
+
+std::vector<std::string> column_names(ColumnSet columns) {
+  static constexpr std::pair<Column, const char*> names[] = {
+      {Column::velocity, "velocity"}, {Column::angular_velocity, "angular velocity"},
+      {Column::radius, "radius"},     {Column::mass, "mass"},
+      {Column::type, "type"},         {Column::contacts, "contacts"}};
+  std::vector<std::string> result{"id", "position"};
+  for (const auto& [column, name] : names)
+    if (columns.has(column)) result.emplace_back(name);
+  return result;
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,31 @@
+#pragma once
+/// Fields sampled at particles: the inverse of the splat, for fluctuations about the local mean.
+#include <array>
+#include <span>
+#include <vector>
+
+#include "grainvdb/leaf_buffers.hpp"
+#include "grainvdb/lattice.hpp"
+
+namespace grainvdb {
+
+/// A vector ratio on leaf buffers: channels first … first+2 of `numerator` over one channel of `denominator`. Both may be
+/// the same buffers; their topologies may differ.
+struct RatioView {
+  const LeafBuffers* numerator = nullptr;
+  int first = 0;
+  const LeafBuffers* denominator = nullptr;
+  int channel = 0;
+};
+
+/// The ratio formed at the eight voxels around each position and interpolated trilinearly, with periodic wrap. Every
+/// position must be surrounded by voxels with a positive denominator (true for c > √3 h and particles that were
+/// splatted); throws std::logic_error otherwise.
+std::vector<Vec3> sample_trilinear(const Lattice& lattice, const RatioView& ratio, const Columns3& position);
+
+/// Numerator and denominator are summed over the homogeneous axes first; then the ratio is interpolated linearly along
+/// the others (a constant when all three are homogeneous).
+std::vector<Vec3> sample_profile(const Lattice& lattice, const RatioView& ratio, const Columns3& position,
+                                 std::array<bool, 3> homogeneous);
+
+}  // namespace grainvdb

@@ -1,0 +1,31 @@
+#pragma once
+/// The splat: a bucketed frame in, channel leaf buffers out. Every leaf is written by one task that adds its terms in a
+/// fixed order, so the result has the same bytes for any number of threads.
+#include <memory>
+#include <span>
+
+#include "bin/buckets.hpp"
+#include "grainvdb/kernel.hpp"
+#include "grainvdb/leaf_buffers.hpp"
+#include "grainvdb/moment.hpp"
+
+namespace grainvdb {
+
+/// The voxels that the kernel reaches from any entry: exactly those where W > 0.
+std::shared_ptr<const Topology> particle_topology(const Lattice& lattice, const LucyKernel& kernel,
+                                                  const Buckets& buckets);
+
+/// Σ_α q_α W(x - x_α) at every active voxel. `q` is laid out [point][channel].
+LeafBuffers splat_particles(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
+                            std::shared_ptr<const Topology> topology, std::span<const double> q, int channels);
+
+/// Σ_α q_α ∂_j W(x - x_α): channel 3 v + j for value v and axis j. `q` is laid out [point][value].
+LeafBuffers splat_particle_gradients(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
+                                     std::shared_ptr<const Topology> topology, std::span<const double> q, int values);
+
+/// Σ over half branches of q ∫₀¹ W(x - x_α + s a) ds, on the voxels that any branch reaches (the integral is > 0).
+/// `q` is laid out [branch][channel].
+LeafBuffers splat_contacts(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
+                           std::span<const double> q, int channels, LineIntegral method);
+
+}  // namespace grainvdb
