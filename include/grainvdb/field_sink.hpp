@@ -16,17 +16,17 @@ namespace grainvdb {
 struct OutputLayout {
   explicit OutputLayout(const Lattice& l) : lattice(l) {}
   Lattice lattice;
-  Coord first;                        ///< the voxels that are written: first … last, inclusive
+  Coord first;  ///< the voxels that are written: first … last, inclusive
   Coord last;
-  std::size_t time_count = 1;         ///< output times
-  std::vector<FieldMeta> fields;      ///< in the order in which they are written
+  std::size_t time_count = 1;     ///< output times
+  std::vector<FieldMeta> fields;  ///< in the order in which they are written
   bool has_mask = false;
-  std::string length_unit, time_unit; ///< of the axes; time_unit is "step" where the dump has no time
+  std::string length_unit, time_unit;  ///< of the axes; time_unit is "step" where the dump has no time
 };
 
 /// One output time: a frame, or the mean over a window of frames.
 struct OutputTime {
-  double time = 0;              ///< mean time of the frames [time_unit]
+  double time = 0;  ///< mean time of the frames [time_unit]
   std::int64_t first_step = 0;
   std::int64_t last_step = 0;
   std::size_t frame_count = 1;
@@ -48,7 +48,7 @@ class FieldSink {
 };
 
 struct SinkInfo {
-  std::string name;         ///< as in the pipeline file's output.formats
+  std::string name;  ///< as in the pipeline file's output.formats
   std::string description;
   std::unique_ptr<FieldSink> (*make)(const std::string& directory);
 };

@@ -29,14 +29,19 @@ class ColumnSet {
   constexpr ColumnSet(Column c) : bits_(static_cast<unsigned>(c)) {}  // NOLINT: implicit by design
   constexpr bool has(Column c) const { return (bits_ & static_cast<unsigned>(c)) != 0; }
   constexpr ColumnSet operator|(ColumnSet o) const { return ColumnSet(bits_ | o.bits_); }
-  constexpr ColumnSet& operator|=(ColumnSet o) { bits_ |= o.bits_; return *this; }
+  constexpr ColumnSet& operator|=(ColumnSet o) {
+    bits_ |= o.bits_;
+    return *this;
+  }
   constexpr bool operator==(const ColumnSet&) const = default;
 
  private:
   constexpr explicit ColumnSet(unsigned bits) : bits_(bits) {}
   unsigned bits_ = 0;
 };
-constexpr ColumnSet operator|(Column a, Column b) { return ColumnSet(a) | ColumnSet(b); }
+constexpr ColumnSet operator|(Column a, Column b) {
+  return ColumnSet(a) | ColumnSet(b);
+}
 
 /// "id", "position", then the names of the columns in the set: what a reader parses for it.
 std::vector<std::string> column_names(ColumnSet columns);
@@ -47,11 +52,11 @@ using Columns3 = std::array<std::vector<double>, 3>;
 /// Particles in ascending order of id. A column that was not asked for is empty.
 struct Particles {
   std::vector<std::int64_t> id;
-  Columns3 position;          ///< as dumped, unwrapped coordinates included; [length]
-  Columns3 velocity;          ///< [length/time]
-  Columns3 angular_velocity;  ///< [1/time]
-  std::vector<double> radius; ///< > 0 [length]
-  std::vector<double> mass;   ///< > 0 [mass]
+  Columns3 position;           ///< as dumped, unwrapped coordinates included; [length]
+  Columns3 velocity;           ///< [length/time]
+  Columns3 angular_velocity;   ///< [1/time]
+  std::vector<double> radius;  ///< > 0 [length]
+  std::vector<double> mass;    ///< > 0 [mass]
   std::vector<int> type;
 
   std::size_t size() const { return id.size(); }

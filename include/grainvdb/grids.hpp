@@ -1,8 +1,8 @@
 #pragma once
 /// The OpenVDB grids behind a SparseField. Apart from sparse_field.hpp because OpenVDB is slow to compile.
-#include <openvdb/openvdb.h>
-
 #include <vector>
+
+#include <openvdb/openvdb.h>
 
 #include "grainvdb/sparse_field.hpp"
 

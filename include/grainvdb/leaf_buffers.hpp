@@ -14,7 +14,8 @@ class LeafBuffers {
  public:
   LeafBuffers() = default;
   LeafBuffers(std::shared_ptr<const Topology> topology, int channels)
-      : topology_(std::move(topology)), channels_(channels),
+      : topology_(std::move(topology)),
+        channels_(channels),
         data_(topology_->leaf_count() * static_cast<std::size_t>(channels) * leaf_size) {}
 
   const std::shared_ptr<const Topology>& topology() const { return topology_; }

@@ -1,5 +1,6 @@
 #pragma once
-/// Why a field has no value at a voxel. A voxel may carry several reasons; a field is NaN wherever one of its own applies.
+/// Why a field has no value at a voxel. A voxel may carry several reasons; a field is NaN wherever one of its own
+/// applies.
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,17 +12,20 @@
 namespace grainvdb {
 
 enum class Reason : std::uint32_t {
-  outside = 1u << 0,               ///< no kernel reaches the voxel
-  no_material = 1u << 1,           ///< φ = 0: reached by contacts only; velocity, diameter, temperature, … undefined
-  low_pressure = 1u << 2,          ///< P ≤ P_min: μ, I, g, gd/δv undefined
-  no_shear_stress = 1u << 3,       ///< |σ| = 0: μ = 0, g = |γ̇|/μ undefined
-  no_fluctuation = 1u << 4,        ///< T ≤ T_min: gd/δv undefined
-  no_spin_fluctuation = 1u << 5,   ///< δω² ≤ its minimum: g/δω, δv/(d δω) undefined
-  one_sided_gradient = 1u << 6,    ///< a neighbour along an axis is missing: that derivative is one-sided (a value, less accurate)
-  no_gradient = 1u << 7,           ///< both neighbours along an axis are missing: gradient undefined
-  degenerate_stress_axes = 1u << 8,   ///< principal stresses closer than the gap: axes undefined
-  degenerate_strain_axes = 1u << 9,   ///< principal strain rates closer than the gap, or no shearing: coaxiality undefined
-  tensile_stress = 1u << 10,          ///< a principal stress is tensile or zero: Mohr-Coulomb ratio undefined
+  outside = 1u << 0,              ///< no kernel reaches the voxel
+  no_material = 1u << 1,          ///< φ = 0: reached by contacts only; velocity, diameter, temperature, … undefined
+  low_pressure = 1u << 2,         ///< P ≤ P_min: μ, I, g, gd/δv undefined
+  no_shear_stress = 1u << 3,      ///< |σ| = 0: μ = 0, g = |γ̇|/μ undefined
+  no_fluctuation = 1u << 4,       ///< T ≤ T_min: gd/δv undefined
+  no_spin_fluctuation = 1u << 5,  ///< δω² ≤ its minimum: g/δω, δv/(d δω) undefined
+  one_sided_gradient =
+      1u << 6,  ///< a neighbour along an axis is missing: that derivative is one-sided (a value, less accurate)
+  no_gradient = 1u << 7,             ///< both neighbours along an axis are missing: gradient undefined
+  degenerate_stress_axes = 1u << 8,  ///< principal stresses closer than the gap: axes undefined
+  degenerate_strain_axes =
+      1u << 9,                ///< principal strain rates closer than the gap, or no shearing: coaxiality undefined
+  tensile_stress = 1u << 10,  ///< a principal stress is tensile or zero: Mohr-Coulomb ratio undefined
+  negative_temperature = 1u << 11,  ///< the gradient part exceeds the one-pass variance: temperature undefined
 };
 
 struct ReasonInfo {
@@ -38,7 +42,9 @@ class Mask {
   explicit Mask(std::shared_ptr<const Topology> topology)
       : topology_(std::move(topology)), bits_(topology_->leaf_count() * leaf_size) {}
   const std::shared_ptr<const Topology>& topology() const { return topology_; }
-  void add(std::size_t leaf, int offset, Reason r) { bits_[leaf * leaf_size + static_cast<std::size_t>(offset)] |= static_cast<std::uint32_t>(r); }
+  void add(std::size_t leaf, int offset, Reason r) {
+    bits_[leaf * leaf_size + static_cast<std::size_t>(offset)] |= static_cast<std::uint32_t>(r);
+  }
   const std::uint32_t* leaf(std::size_t leaf) const { return bits_.data() + leaf * leaf_size; }
   /// The number of active voxels that carry the reason.
   std::size_t count(Reason r) const;

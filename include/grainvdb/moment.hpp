@@ -34,17 +34,19 @@ struct Moment {
 
   std::string name;
   Kind kind = Kind::particles;
-  int channels = 1;   ///< per voxel; for particle_gradients three times the number of values per particle
+  int channels = 1;     ///< per voxel; for particle_gradients three times the number of values per particle
   ColumnSet columns{};  ///< what must be read for it
-  std::vector<MomentPtr> frame_needs{};  ///< moments of the same frame that must be complete before: one more pass over the particles
-  std::vector<MomentPtr> mean_needs{};   ///< moments whose time mean must be known before: one more sweep over the frames
-  LineIntegral line_integral{};          ///< for contacts
+  std::vector<MomentPtr>
+      frame_needs{};  ///< moments of the same frame that must be complete before: one more pass over the particles
+  std::vector<MomentPtr>
+      mean_needs{};              ///< moments whose time mean must be known before: one more sweep over the frames
+  LineIntegral line_integral{};  ///< for contacts
 
   /// Fills q for every material particle (or half branch), laid out [entry][value].
   std::function<void(const FrameView& view, std::span<double> q)> values{};
 
-  /// For Kind::voxels: `in` are the channels of frame_needs one after another, `out` this moment's channels; each points
-  /// to the leaf_size values of one leaf.
+  /// For Kind::voxels: `in` are the channels of frame_needs one after another, `out` this moment's channels; each
+  /// points to the leaf_size values of one leaf.
   std::function<void(std::span<const double* const> in, std::span<double* const> out)> voxels{};
 
   int value_count() const { return kind == Kind::particle_gradients ? channels / 3 : channels; }

@@ -15,8 +15,8 @@ using OptionValue = std::variant<bool, std::int64_t, double, std::string, std::v
 /// The declaration of one option.
 struct OptionInfo {
   std::string name;
-  OptionValue default_value;  ///< also fixes the type
-  std::string help;           ///< one line; units included where there are any
+  OptionValue default_value;           ///< also fixes the type
+  std::string help;                    ///< one line; units included where there are any
   std::vector<std::string> choices{};  ///< for texts (and the items of lists): what is accepted; empty: anything
   double minimum = -std::numeric_limits<double>::infinity();  ///< for numbers, inclusive
   double maximum = std::numeric_limits<double>::infinity();   ///< for numbers, inclusive

@@ -17,9 +17,9 @@ namespace grainvdb {
 
 /// What counts as material. A particle must satisfy every criterion that is given.
 struct Selection {
-  std::vector<int> types;                                          ///< empty: any
-  std::optional<std::pair<std::int64_t, std::int64_t>> ids;        ///< inclusive range
-  std::optional<std::pair<Vec3, Vec3>> region;                     ///< lo ≤ x < hi per axis, on the wrapped position [length]
+  std::vector<int> types;                                    ///< empty: any
+  std::optional<std::pair<std::int64_t, std::int64_t>> ids;  ///< inclusive range
+  std::optional<std::pair<Vec3, Vec3>> region;  ///< lo ≤ x < hi per axis, on the wrapped position [length]
   bool empty() const { return types.empty() && !ids && !region; }
 };
 
@@ -34,9 +34,9 @@ std::vector<std::size_t> select_frames(const FrameRange& range, std::size_t n);
 
 /// Bounds that are checked before the work they bound begins.
 struct Limits {
-  std::int64_t extent = 1'000'000;          ///< voxels along any axis
-  std::int64_t dense_voxels = 4'000'000'000; ///< voxels of the written box
-  double memory_gb = 0;                     ///< of moment sums; 0: three quarters of the machine's memory
+  std::int64_t extent = 1'000'000;            ///< voxels along any axis
+  std::int64_t dense_voxels = 4'000'000'000;  ///< voxels of the written box
+  double memory_gb = 0;                       ///< of moment sums; 0: three quarters of the machine's memory
 };
 
 struct Pipeline {
@@ -44,21 +44,22 @@ struct Pipeline {
   InputSpec input;
   Selection select;
   FrameRange frames;
-  double voxel = 0;          ///< h [length]
-  Vec3 origin{};             ///< of the lattice [length]
-  double cutoff = 0;         ///< c of the kernel [length]
-  std::size_t window = 0;    ///< frames per time average; 0: all frames in one
+  double voxel = 0;                  ///< h [length]
+  Vec3 origin{};                     ///< of the lattice [length]
+  double cutoff = 0;                 ///< c of the kernel [length]
+  std::size_t window = 0;            ///< frames per time average; 0: all frames in one
   std::vector<std::string> fields;   ///< what to write, in this order
   StageSettings stages;              ///< option values of every stage, defaults filled in
   std::vector<std::string> formats;  ///< of the output: hdf5, vdb
   Limits limits;
-  std::string resolved;              ///< this pipeline as YAML with all defaults, for the provenance
+  std::string resolved;                   ///< this pipeline as YAML with all defaults, for the provenance
   std::map<std::string, Location> where;  ///< where each key stands, e.g. "kernel.cutoff"; overrides stand at "--set"
   Location location(const std::string& key) const;  ///< of a key, or of the file when the key was not given
 };
 
 /// Reads a pipeline file. `overrides` are "a.b=value" texts that win over the file. Relative input paths are taken
-/// relative to the folder of the file. Throws ConfigError with file and line for anything that cannot be run as written.
+/// relative to the folder of the file. Throws ConfigError with file and line for anything that cannot be run as
+/// written.
 Pipeline load_pipeline(const std::string& file, const std::vector<std::string>& overrides = {},
                        const StageRegistry& registry = StageRegistry::standard());
 

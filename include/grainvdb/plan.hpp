@@ -16,14 +16,14 @@ struct Sweep {
 };
 
 struct Plan {
-  std::vector<const Stage*> stages;   ///< in an order in which each finds its needs
-  std::vector<Sweep> sweeps;          ///< one, or two where a moment needs a time mean
-  std::vector<MomentPtr> means;       ///< the moments whose time means are kept
-  std::vector<std::string> not_needed;///< stages of the registry that this plan does not run
+  std::vector<const Stage*> stages;     ///< in an order in which each finds its needs
+  std::vector<Sweep> sweeps;            ///< one, or two where a moment needs a time mean
+  std::vector<MomentPtr> means;         ///< the moments whose time means are kept
+  std::vector<std::string> not_needed;  ///< stages of the registry that this plan does not run
 };
 
-/// Throws ConfigError for an unknown field (with "did you mean"), for a cycle among stages (naming it), and for a kernel too
-/// narrow for a moment that interpolates to particles (c < √3 h).
+/// Throws ConfigError for an unknown field (with "did you mean"), for a cycle among stages (naming it), and for a
+/// kernel too narrow for a moment that interpolates to particles (c < √3 h).
 Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry = StageRegistry::standard());
 
 /// The plan in words, as `grainvdb graph` prints it.

@@ -15,25 +15,25 @@
 namespace grainvdb {
 
 struct Progress {
-  std::size_t frames_done = 0;   ///< over all sweeps
+  std::size_t frames_done = 0;  ///< over all sweeps
   std::size_t frames_total = 0;
-  std::string doing;             ///< e.g. "sweep 1 of 2"
+  std::string doing;  ///< e.g. "sweep 1 of 2"
 };
 
 struct RunReport {
-  std::size_t frames = 0;                ///< read at least once
-  std::size_t active_voxels = 0;         ///< of the last output time
-  std::size_t channels = 0;              ///< splatted per frame, over all sweeps
-  std::size_t grids = 0;                 ///< OpenVDB grids allocated over the run, the mask apart
-  std::vector<std::pair<std::string, double>> seconds;  ///< wall time by step of the run: read, bin and splat, …
+  std::size_t frames = 0;                                   ///< read at least once
+  std::size_t active_voxels = 0;                            ///< of the last output time
+  std::size_t channels = 0;                                 ///< splatted per frame, over all sweeps
+  std::size_t grids = 0;                                    ///< OpenVDB grids allocated over the run, the mask apart
+  std::vector<std::pair<std::string, double>> seconds;      ///< wall time by step of the run: read, bin and splat, …
   std::vector<std::pair<std::string, std::size_t>> masked;  ///< reason → voxels, of the last output time
-  std::vector<std::string> files;        ///< written
+  std::vector<std::string> files;                           ///< written
   ReadCounters read;
 };
 
 /// What can only be checked once the dump is known: cutoff against periodic lengths, voxels against periods, frames
-/// against the selection, extents against the limits, columns against the needs. Throws ConfigError, InputError or LimitError.
-/// `grainvdb validate` calls it too. Returns the lattice with its periods.
+/// against the selection, extents against the limits, columns against the needs. Throws ConfigError, InputError or
+/// LimitError. `grainvdb validate` calls it too. Returns the lattice with its periods.
 Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source);
 
 /// Runs the whole pipeline into the sinks. `progress` is called from the calling thread, after each frame.

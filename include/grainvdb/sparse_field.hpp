@@ -34,7 +34,9 @@ class SparseField {
   int components() const { return meta_.components; }
 
   /// The 512 values of a component in a leaf, in OpenVDB's order (see leaf_offset).
-  float* leaf(std::size_t leaf, int component = 0) { return leaves_[leaf * components_() + static_cast<std::size_t>(component)]; }
+  float* leaf(std::size_t leaf, int component = 0) {
+    return leaves_[leaf * components_() + static_cast<std::size_t>(component)];
+  }
   const float* leaf(std::size_t leaf, int component = 0) const {
     return leaves_[leaf * components_() + static_cast<std::size_t>(component)];
   }

@@ -19,8 +19,8 @@ namespace grainvdb {
 
 /// What must be there before a stage can run.
 struct StageNeeds {
-  std::vector<std::string> fields;    ///< fields made by other stages
-  std::vector<MomentPtr> moments;     ///< time-averaged moments
+  std::vector<std::string> fields;  ///< fields made by other stages
+  std::vector<MomentPtr> moments;   ///< time-averaged moments
 };
 
 /// What a stage sees when it runs.
@@ -42,15 +42,16 @@ class StageInput {
 };
 
 struct Stage {
-  std::string name;           ///< of the field it gives
+  std::string name;  ///< of the field it gives
   int components = 1;
   Dimension dimension{};
-  bool additive = false;      ///< zero where no kernel reaches (sums such as phi); NaN there otherwise
-  std::string description;    ///< one line
-  std::string equation;       ///< formula with its tag
+  bool additive = false;    ///< zero where no kernel reaches (sums such as phi); NaN there otherwise
+  std::string description;  ///< one line
+  std::string equation;     ///< formula with its tag
   std::vector<OptionInfo> options{};
   std::function<StageNeeds(const StageSettings&)> needs;
-  /// Fills `out` at every active voxel; leaves NaN and a reason in the mask where the field is undefined.
+  /// Fills `out` at every active voxel; leaves NaN and a reason in the mask where the field is undefined. Empty for the
+  /// one stage that makes no field of its own: `mask`, the reasons gathered from all others.
   std::function<void(const StageInput&, SparseField& out)> compute;
 };
 

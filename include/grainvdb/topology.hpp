@@ -15,9 +15,13 @@ inline constexpr int leaf_edge = 8;
 inline constexpr int leaf_size = leaf_edge * leaf_edge * leaf_edge;
 
 /// Origin of the leaf that holds a voxel.
-constexpr Coord leaf_origin(const Coord& c) { return {c.x & ~7, c.y & ~7, c.z & ~7}; }
+constexpr Coord leaf_origin(const Coord& c) {
+  return {c.x & ~7, c.y & ~7, c.z & ~7};
+}
 /// Offset of a voxel in its leaf, 64 x + 8 y + z, as in OpenVDB.
-constexpr int leaf_offset(const Coord& c) { return ((c.x & 7) << 6) | ((c.y & 7) << 3) | (c.z & 7); }
+constexpr int leaf_offset(const Coord& c) {
+  return ((c.x & 7) << 6) | ((c.y & 7) << 3) | (c.z & 7);
+}
 /// The voxel at an offset of the leaf with the given origin.
 constexpr Coord voxel_at(const Coord& origin, int offset) {
   return {origin.x + (offset >> 6), origin.y + ((offset >> 3) & 7), origin.z + (offset & 7)};
@@ -59,7 +63,9 @@ class Topology {
   std::optional<std::size_t> find(const Coord& origin) const;
 
   /// Smallest box of voxels [first, last] that holds all active voxels; nothing when there are none.
-  struct Bounds { Coord first, last; };
+  struct Bounds {
+    Coord first, last;
+  };
   std::optional<Bounds> bounds() const;
 
  private:

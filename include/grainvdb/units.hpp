@@ -19,9 +19,10 @@ inline constexpr Dimension none{0, 0, 0}, length{0, 1, 0}, time{0, 0, 1}, mass{1
     rate{0, 0, -1}, density{1, -3, 0}, stress{1, -1, -2}, velocity_squared{0, 2, -2}, rate_squared{0, 0, -2};
 }
 
-/// A coherent unit system: stress is mass/(length time²). LAMMPS `real`, `metal` and `electron` are not coherent and are not offered.
+/// A coherent unit system: stress is mass/(length time²). LAMMPS `real`, `metal` and `electron` are not coherent and
+/// are not offered.
 struct UnitSystem {
-  std::string name;    ///< as LAMMPS names it: si, cgs, lj, micro, nano
+  std::string name;  ///< as LAMMPS names it: si, cgs, lj, micro, nano
   std::string mass, length, time;
 
   /// "m/s", "kg/(m s^2)" is written "Pa" in si; "1" for a pure number.

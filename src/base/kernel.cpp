@@ -8,7 +8,8 @@ namespace grainvdb {
 
 LucyKernel::LucyKernel(double cutoff)
     : cutoff_(cutoff), inverse_cutoff_(1 / cutoff), norm_(105 / (16 * std::numbers::pi * cutoff * cutoff * cutoff)) {
-  if (!(cutoff > 0) || !std::isfinite(cutoff)) throw std::invalid_argument("the kernel cutoff must be positive and finite");
+  if (!(cutoff > 0) || !std::isfinite(cutoff))
+    throw std::invalid_argument("the kernel cutoff must be positive and finite");
 }
 
 double LucyKernel::value(double r2) const {

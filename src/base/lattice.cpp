@@ -27,9 +27,10 @@ void Lattice::set_periods(const Box& box) {
       if (std::floor(n) >= 1) text << " and " << box.length(a) / std::floor(n);
       throw std::invalid_argument(text.str());
     }
-    // The first voxel whose centre is inside the box; the small allowance keeps it when rounding puts it a hair below lo.
-    period_[a] = Period{static_cast<std::int32_t>(std::ceil(to_index(a, box.lo[a]) - 1e-6)),
-                        static_cast<std::int32_t>(whole)};
+    // The first voxel whose centre is inside the box; the small allowance keeps it when rounding puts it a hair below
+    // lo.
+    period_[a] =
+        Period{static_cast<std::int32_t>(std::ceil(to_index(a, box.lo[a]) - 1e-6)), static_cast<std::int32_t>(whole)};
   }
 }
 

@@ -15,6 +15,7 @@ const std::vector<ReasonInfo>& reasons() {
       {Reason::degenerate_stress_axes, "degenerate_stress_axes", "principal stresses too close: axes undefined"},
       {Reason::degenerate_strain_axes, "degenerate_strain_axes", "principal strain rates too close: axes undefined"},
       {Reason::tensile_stress, "tensile_stress", "a principal stress is not compressive: Mohr-Coulomb ratio undefined"},
+      {Reason::negative_temperature, "negative_temperature", "gradient part exceeds the one-pass variance"},
   };
   return all;
 }
@@ -22,9 +23,8 @@ const std::vector<ReasonInfo>& reasons() {
 std::size_t Mask::count(Reason r) const {
   std::size_t n = 0;
   for (std::size_t l = 0; l < topology_->leaf_count(); ++l)
-    topology_->mask(l).for_each([&](int offset) {
-      n += (leaf(l)[offset] & static_cast<std::uint32_t>(r)) != 0 ? 1U : 0U;
-    });
+    topology_->mask(l).for_each(
+        [&](int offset) { n += (leaf(l)[offset] & static_cast<std::uint32_t>(r)) != 0 ? 1U : 0U; });
   return n;
 }
 

@@ -1,9 +1,9 @@
 #include "grainvdb/sparse_field.hpp"
 
-#include <openvdb/tree/LeafManager.h>
-
 #include <algorithm>
 #include <stdexcept>
+
+#include <openvdb/tree/LeafManager.h>
 
 #include "grainvdb/grids.hpp"
 
@@ -30,7 +30,9 @@ openvdb::FloatTree::Ptr make_tree(const Topology& topology, float background) {
 }  // namespace
 
 SparseField::SparseField(FieldMeta meta, std::shared_ptr<const Topology> topology, const Lattice& lattice)
-    : meta_(std::move(meta)), topology_(std::move(topology)), grids_(std::make_unique<Grids>()),
+    : meta_(std::move(meta)),
+      topology_(std::move(topology)),
+      grids_(std::make_unique<Grids>()),
       leaves_(topology_->leaf_count() * components_()) {
   const double h = lattice.voxel();
   const Vec3& o = lattice.origin();

@@ -6,10 +6,13 @@
 
 namespace grainvdb {
 
-double sphere_volume(double radius) { return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius; }
+double sphere_volume(double radius) {
+  return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+}
 
 void StageRegistry::add(Stage stage) {
-  if (find(stage.name) != nullptr) throw std::invalid_argument("a stage named '" + stage.name + "' is registered already");
+  if (find(stage.name) != nullptr)
+    throw std::invalid_argument("a stage named '" + stage.name + "' is registered already");
   stages_.push_back(std::move(stage));
 }
 

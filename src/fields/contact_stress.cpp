@@ -1,0 +1,54 @@
+#include <cstddef>
+
+#include "fields/register.hpp"
+#include "fields/voxels.hpp"
+
+namespace grainvdb {
+namespace {
+
+/// The value of contact_stress.line_integral: `exact`, or `gauss1` … `gauss8`.
+LineIntegral line_integral_of(const StageSettings& settings) {
+  const auto& text = option<std::string>(settings, "contact_stress", "line_integral");
+  return {text == "exact" ? 0 : text.back() - '0'};
+}
+
+MomentPtr contact_stress_moment(const StageSettings& settings) {
+  Moment m;
+  m.name = "contact stress " + option<std::string>(settings, "contact_stress", "line_integral");
+  m.kind = Moment::Kind::contacts;
+  m.channels = 9;
+  m.columns = Column::contacts | Column::radius;
+  m.line_integral = line_integral_of(settings);
+  m.values = [](const FrameView& view, std::span<double> q) {
+    const HalfBranches& b = view.branches();
+    for (std::size_t n = 0; n < b.size(); ++n)
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) q[9 * n + 3 * i + j] = -b.force[i][n] * b.arm[j][n];
+  };
+  return std::make_shared<const Moment>(std::move(m));
+}
+
+}  // namespace
+
+void register_contact_stress(StageRegistry& registry) {
+  Stage s;
+  s.name = "contact_stress";
+  s.components = 9;
+  s.dimension = dimension::stress;
+  s.additive = true;
+  s.description = "contact stress, tension positive, row-major ij; every contact of the dump counts";
+  s.equation = "-sum F_ab,i a_ab,j int_0^1 W(x - x_a + s a_ab) ds  (8)";
+  std::vector<std::string> methods{"exact"};
+  for (int n = 1; n <= 8; ++n) methods.push_back("gauss" + std::to_string(n));
+  s.options = {{.name = "line_integral",
+                .default_value = std::string("exact"),
+                .help = "mean of W along a half branch: closed form, or n-point Gauss-Legendre (gauss1 ... gauss8)",
+                .choices = methods}};
+  s.needs = [](const StageSettings& settings) { return StageNeeds{{}, {contact_stress_moment(settings)}}; };
+  s.compute = [](const StageInput& in, SparseField& out) {
+    write_moment(in, *contact_stress_moment(in.settings()), out);
+  };
+  registry.add(std::move(s));
+}
+
+}  // namespace grainvdb
