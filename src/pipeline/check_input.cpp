@@ -1,0 +1,88 @@
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "grainvdb/run.hpp"
+
+namespace grainvdb {
+namespace {
+
+std::string text(double x) {
+  std::ostringstream out;
+  out.precision(9);
+  out << x;
+  return out.str();
+}
+
+void check_plan(const Pipeline& pipeline, const Plan& plan) {
+  if (plan.means.empty())
+    throw ConfigError({pipeline.location("output.fields"),
+                       "nothing to compute: no field that is made from particles is wanted",
+                       {},
+                       "at least one field besides mask",
+                       "`grainvdb stages` lists them"});
+  const bool contacts = std::any_of(plan.sweeps.begin(), plan.sweeps.end(),
+                                    [](const Sweep& s) { return s.columns.has(Column::contacts); });
+  if (contacts && pipeline.input.contacts.files.empty())
+    throw ConfigError({pipeline.location("output.fields"), "the wanted fields need contacts, and the input has none",
+                       "no input.contacts", "input.contacts.files",
+                       "Name the contact dumps, or ask for kinetic_stress instead of stress"});
+}
+
+void check_periodic_box(const Pipeline& pipeline, const FrameInfo& first, const FrameInfo& frame) {
+  for (int a = 0; a < 3; ++a) {
+    const std::string axis(1, "xyz"[a]);
+    if (frame.box.periodic[a] != first.box.periodic[a])
+      throw InputError({{frame.file, 0},
+                        "the box changes its periodicity along " + axis,
+                        "step " + std::to_string(frame.step),
+                        "the boundaries of step " + std::to_string(first.step),
+                        "Choose frames with one kind of box"});
+    if (!first.box.periodic[a]) continue;
+    const double length = first.box.length(a);
+    if (std::abs(frame.box.length(a) - length) > 1e-6 * length)
+      throw InputError({{frame.file, 0},
+                        "the periodic box length along " + axis + " changes",
+                        text(frame.box.length(a)) + " at step " + std::to_string(frame.step),
+                        text(length) + " as at step " + std::to_string(first.step),
+                        "Fields of a deforming periodic box have no common lattice: choose frames of one size"});
+    if (pipeline.cutoff > 0.5 * length)
+      throw ConfigError({pipeline.location("kernel.cutoff"), "the cutoff exceeds half the periodic box along " + axis,
+                         text(pipeline.cutoff), "at most " + text(0.5 * length),
+                         "A particle would meet its own image"});
+  }
+}
+
+}  // namespace
+
+Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source) {
+  check_plan(pipeline, plan);
+  const auto& frames = source.frames();
+  const std::vector<std::size_t> wanted = select_frames(pipeline.frames, frames.size());
+  if (wanted.empty())
+    throw ConfigError({pipeline.location("frames"),
+                       "no frame is selected",
+                       {},
+                       "a range within the " + std::to_string(frames.size()) + " frames of the input",
+                       {}});
+  const FrameInfo& first = frames[wanted.front()];
+  for (std::size_t k : wanted) check_periodic_box(pipeline, first, frames[k]);
+
+  Lattice lattice(pipeline.voxel, pipeline.origin);
+  try {
+    lattice.set_periods(first.box);
+  } catch (const std::invalid_argument& e) {
+    throw ConfigError({pipeline.location("lattice.voxel"), e.what(), {}, {}, {}});
+  }
+
+  // A column that only the second sweep wants would be missed after the whole of the first.
+  if (plan.sweeps.size() > 1) {
+    ColumnSet all;
+    for (const Sweep& s : plan.sweeps) all |= s.columns;
+    source.read(wanted.front(), all);
+  }
+  return lattice;
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,212 @@
+#include "pipeline/frame_context.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <unistd.h>
+
+#include "bin/branches.hpp"
+#include "grainvdb/stage.hpp"
+#include "splat/sample.hpp"
+#include "splat/splat.hpp"
+
+namespace grainvdb {
+namespace {
+
+template <class T>
+void keep_rows(std::vector<T>& column, const std::vector<std::size_t>& rows) {
+  if (column.empty()) return;
+  for (std::size_t n = 0; n < rows.size(); ++n) column[n] = column[rows[n]];
+  column.resize(rows.size());
+}
+
+bool selected(const Selection& s, const Box& box, const Particles& p, std::size_t i) {
+  if (!s.types.empty() && std::find(s.types.begin(), s.types.end(), p.type[i]) == s.types.end()) return false;
+  if (s.ids && (p.id[i] < s.ids->first || p.id[i] > s.ids->second)) return false;
+  if (!s.region) return true;
+  for (int a = 0; a < 3; ++a) {
+    const auto axis = static_cast<std::size_t>(a);
+    const double x = box.wrap(a, p.position[axis][i]);
+    if (x < s.region->first[axis] || x >= s.region->second[axis]) return false;
+  }
+  return true;
+}
+
+double memory_limit(const Limits& limits) {
+  if (limits.memory_gb > 0) return limits.memory_gb * 1e9;
+  return 0.75 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+}  // namespace
+
+void apply_selection(const Selection& selection, const Box& box, Particles& particles) {
+  if (selection.empty()) return;
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    if (selected(selection, box, particles, i)) rows.push_back(i);
+  keep_rows(particles.id, rows);
+  for (Columns3* columns : {&particles.position, &particles.velocity, &particles.angular_velocity})
+    for (std::vector<double>& column : *columns) keep_rows(column, rows);
+  keep_rows(particles.radius, rows);
+  keep_rows(particles.mass, rows);
+  keep_rows(particles.type, rows);
+}
+
+void check_extent(const Frame& frame, const Lattice& lattice, const Pipeline& pipeline) {
+  const auto limit = static_cast<double>(pipeline.limits.extent);
+  const Particles& p = frame.particles;
+  for (int a = 0; a < 3; ++a) {
+    if (frame.box.periodic[a]) continue;  // wrapped into the box
+    const auto axis = static_cast<std::size_t>(a);
+    const double middle = lattice.to_index(a, 0.5 * (frame.box.lo[axis] + frame.box.hi[axis]));
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      const double index = lattice.to_index(a, p.position[axis][i]);
+      if (std::abs(index - middle) <= limit && std::abs(index) < 1e9) continue;
+      throw LimitError({{frame.file, 0},
+                        "particle " + std::to_string(p.id[i]) + " of step " + std::to_string(frame.step) +
+                            " lies too far from the box",
+                        std::string(1, "xyz"[a]) + " = " + std::to_string(p.position[axis][i]),
+                        "at most limits.extent = " + std::to_string(pipeline.limits.extent) + " voxels from its middle",
+                        "Remove the stray particle with select, correct lattice.voxel, or raise limits.extent"});
+    }
+  }
+}
+
+FrameContext::FrameContext(Frame frame, const Pipeline& pipeline, const Lattice& lattice, const LucyKernel& kernel,
+                           const MomentMeans* means)
+    : pipeline_(pipeline), lattice_(lattice), kernel_(kernel), means_(means), frame_(std::move(frame)) {
+  check_extent(frame_, lattice_, pipeline_);
+  if (frame_.contacts.size() > 0) {
+    branches_ = half_branches(frame_);
+    frame_.contacts = {};
+  }
+  apply_selection(pipeline_.select, frame_.box, frame_.particles);
+}
+
+void FrameContext::bucket_particles() {
+  if (buckets_) return;
+  buckets_ = bin_points(lattice_, frame_.particles.position, kernel_.cutoff());
+  topology_ = particle_topology(lattice_, kernel_, *buckets_);
+}
+
+void FrameContext::check_memory(int values, const MomentSums& sums) const {
+  // Splat buffers of this group, the sums, and their mean when the window ends.
+  const std::size_t leaves = topology_->leaf_count();
+  const double need = static_cast<double>(leaves) * leaf_size * sizeof(double) * values +
+                      2.0 * static_cast<double>(sums.bytes(std::max(leaves, sums.leaf_count())));
+  const double limit = memory_limit(pipeline_.limits);
+  if (need <= limit) return;
+  throw LimitError({{frame_.file, 0},
+                    "step " + std::to_string(frame_.step) + " needs more memory than is allowed",
+                    std::to_string(need / 1e9) + " GB for " + std::to_string(leaves) + " leaves of 512 voxels",
+                    "at most " + std::to_string(limit / 1e9) + " GB",
+                    "Use larger voxels or fewer fields, or raise limits.memory_gb"});
+}
+
+std::size_t FrameContext::entries(Moment::Kind kind) const {
+  return kind == Moment::Kind::contacts ? branches_.size() : frame_.particles.size();
+}
+
+void FrameContext::run_pass(const std::vector<MomentPtr>& pass, MomentSums& sums) {
+  // One splat serves all moments that share kernel and nodes.
+  std::vector<Group> groups;
+  for (const MomentPtr& m : pass) {
+    if (m->kind == Moment::Kind::voxels) continue;
+    const auto same = [&](const Group& g) { return g[0]->kind == m->kind && g[0]->line_integral == m->line_integral; };
+    const auto it = std::find_if(groups.begin(), groups.end(), same);
+    if (it == groups.end()) {
+      groups.push_back({m});
+    } else {
+      it->push_back(m);
+    }
+  }
+  for (const Group& group : groups) splat_group(group, sums);
+  for (const MomentPtr& m : pass)
+    if (m->kind == Moment::Kind::voxels) combine_voxels(*m, sums);
+}
+
+void FrameContext::splat_group(const Group& group, MomentSums& sums) {
+  const std::size_t n = entries(group[0]->kind);
+  int values = 0;
+  for (const MomentPtr& m : group) values += m->value_count();
+  const auto stride = static_cast<std::size_t>(values);
+
+  if (group[0]->kind != Moment::Kind::contacts) {
+    bucket_particles();
+    check_memory(values, sums);
+  }
+
+  std::vector<double> q(n * stride);
+  std::vector<double> own;
+  std::size_t first = 0;
+  for (const MomentPtr& m : group) {
+    const auto width = static_cast<std::size_t>(m->value_count());
+    own.assign(n * width, 0.0);
+    m->values(*this, own);
+    for (std::size_t i = 0; i < n; ++i) std::copy_n(own.data() + i * width, width, q.data() + i * stride + first);
+    first += width;
+  }
+  keep(splat(group, q, values), group, sums);
+}
+
+LeafBuffers FrameContext::splat(const Group& group, const std::vector<double>& q, int values) const {
+  switch (group[0]->kind) {
+    case Moment::Kind::contacts:
+      return splat_contacts(lattice_, kernel_, branches_, q, values, group[0]->line_integral);
+    case Moment::Kind::particle_gradients:
+      return splat_particle_gradients(lattice_, kernel_, *buckets_, topology_, q, values);
+    default:
+      return splat_particles(lattice_, kernel_, *buckets_, topology_, q, values);
+  }
+}
+
+void FrameContext::keep(LeafBuffers buffers, const Group& group, MomentSums& sums) {
+  buffers_.push_back(std::make_unique<LeafBuffers>(std::move(buffers)));
+  int channel = 0;
+  for (const MomentPtr& m : group) {
+    places_[m->name] = {buffers_.back().get(), channel};
+    if (sums.wants(*m)) sums.add(*m, *buffers_.back(), channel);
+    channel += m->channels;
+  }
+}
+
+void FrameContext::combine_voxels(const Moment& moment, MomentSums& sums) {
+  std::vector<Place> channels;
+  for (const MomentPtr& need : moment.frame_needs)
+    for (int c = 0; c < need->channels; ++c)
+      channels.push_back({places_.at(need->name).buffers, places_.at(need->name).channel + c});
+
+  // All needs are particle moments, and those of one frame share its particle topology.
+  LeafBuffers result(channels.at(0).buffers->topology(), moment.channels);
+  for_each_leaf(*result.topology(), [&](std::size_t leaf) {
+    std::vector<const double*> in;
+    std::vector<double*> out;
+    for (const Place& p : channels) in.push_back(p.buffers->block(leaf, p.channel));
+    for (int c = 0; c < moment.channels; ++c) out.push_back(result.block(leaf, c));
+    moment.voxels(in, out);
+  });
+  keep(std::move(result), {std::make_shared<const Moment>(moment)}, sums);
+}
+
+std::vector<Vec3> FrameContext::interpolate_frame(const Moment& numerator, const Moment& denominator) const {
+  const Place n = places_.at(numerator.name);
+  const Place d = places_.at(denominator.name);
+  return sample_trilinear(lattice_, {n.buffers, n.channel, d.buffers, d.channel}, frame_.particles.position);
+}
+
+std::vector<Vec3> FrameContext::interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
+                                                          std::array<bool, 3> homogeneous) const {
+  const Place n = places_.at(numerator.name);
+  const Place d = places_.at(denominator.name);
+  return sample_profile(lattice_, {n.buffers, n.channel, d.buffers, d.channel}, frame_.particles.position, homogeneous);
+}
+
+std::vector<Vec3> FrameContext::interpolate_mean(const Moment& numerator, const Moment& denominator) const {
+  const LeafBuffers& values = means_->values();
+  return sample_trilinear(lattice_,
+                          {&values, means_->first_channel(numerator), &values, means_->first_channel(denominator)},
+                          frame_.particles.position);
+}
+
+}  // namespace grainvdb

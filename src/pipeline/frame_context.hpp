@@ -1,0 +1,72 @@
+#pragma once
+/// One frame on its way through the passes of a sweep: bucketed once, splatted pass by pass, sampled in between.
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "average/moment_sums.hpp"
+#include "bin/buckets.hpp"
+#include "grainvdb/kernel.hpp"
+#include "grainvdb/lattice.hpp"
+#include "grainvdb/leaf_buffers.hpp"
+#include "grainvdb/moment.hpp"
+#include "grainvdb/pipeline.hpp"
+
+namespace grainvdb {
+
+/// Refuses positions whose voxel is further than `limits.extent` from the box, before any grid grows towards them
+/// (LimitError naming the particle).
+void check_extent(const Frame& frame, const Lattice& lattice, const Pipeline& pipeline);
+
+/// Keeps the particles that the selection counts as material.
+void apply_selection(const Selection& selection, const Box& box, Particles& particles);
+
+class FrameContext : public FrameView {
+ public:
+  /// Takes the frame; `means` are those of the sweep before, or nullptr.
+  FrameContext(Frame frame, const Pipeline& pipeline, const Lattice& lattice, const LucyKernel& kernel,
+               const MomentMeans* means);
+
+  /// Splats the moments of one pass, in one splat per kind, and adds those that `sums` wants.
+  void run_pass(const std::vector<MomentPtr>& pass, MomentSums& sums);
+
+  const Particles& particles() const override { return frame_.particles; }
+  const HalfBranches& branches() const override { return branches_; }
+  std::vector<Vec3> interpolate_frame(const Moment& numerator, const Moment& denominator) const override;
+  std::vector<Vec3> interpolate_mean(const Moment& numerator, const Moment& denominator) const override;
+  std::vector<Vec3> interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
+                                              std::array<bool, 3> homogeneous) const override;
+
+ private:
+  /// Where a finished moment of this frame lies.
+  struct Place {
+    const LeafBuffers* buffers = nullptr;
+    int channel = 0;
+  };
+  using Group = std::vector<MomentPtr>;
+
+  void splat_group(const Group& group, MomentSums& sums);
+  void combine_voxels(const Moment& moment, MomentSums& sums);
+  void keep(LeafBuffers buffers, const Group& group, MomentSums& sums);
+  LeafBuffers splat(const Group& group, const std::vector<double>& q, int values) const;
+  void bucket_particles();
+  /// Refuses, before it is allocated, what would exceed limits.memory_gb (LimitError).
+  void check_memory(int values, const MomentSums& sums) const;
+  std::size_t entries(Moment::Kind kind) const;
+
+  const Pipeline& pipeline_;
+  const Lattice& lattice_;
+  const LucyKernel& kernel_;
+  const MomentMeans* means_;
+  Frame frame_;
+  HalfBranches branches_;
+  std::optional<Buckets> buckets_;
+  std::shared_ptr<const Topology> topology_;
+  std::vector<std::unique_ptr<LeafBuffers>> buffers_;
+  std::map<std::string, Place> places_;
+};
+
+}  // namespace grainvdb

@@ -1,0 +1,47 @@
+#include "pipeline/window.hpp"
+
+#include <optional>
+
+#include "pipeline/frame_context.hpp"
+
+namespace grainvdb {
+namespace {
+
+OutputTime time_of(const FrameSource& source, std::span<const std::size_t> wanted) {
+  OutputTime t;
+  t.first_step = source.frames()[wanted.front()].step;
+  t.last_step = source.frames()[wanted.back()].step;
+  t.frame_count = wanted.size();
+  for (std::size_t k : wanted) {
+    const FrameInfo& frame = source.frames()[k];
+    t.time += frame.time.value_or(static_cast<double>(frame.step)) / static_cast<double>(wanted.size());
+  }
+  return t;
+}
+
+}  // namespace
+
+WindowMoments average_window(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
+                             std::span<const std::size_t> wanted, Stopwatch& clock,
+                             const std::function<void(std::size_t)>& frame_done) {
+  const LucyKernel kernel(pipeline.cutoff);
+  MomentSums sums(plan.means);
+  std::optional<MomentMeans> means;
+  for (std::size_t s = 0; s < plan.sweeps.size(); ++s) {
+    const Sweep& sweep = plan.sweeps[s];
+    for (std::size_t k : wanted) {
+      Frame frame = clock.time("read", [&] { return source.read(k, sweep.columns); });
+      clock.time("splat", [&] {
+        FrameContext context(std::move(frame), pipeline, lattice, kernel, means ? &*means : nullptr);
+        for (const auto& pass : sweep.passes) context.run_pass(pass, sums);
+        sums.end_frame();
+      });
+      frame_done(s);
+    }
+    sums.end_sweep();
+    clock.time("average", [&] { means.emplace(sums.means(plan.means, wanted.size())); });
+  }
+  return {std::move(*means), time_of(source, wanted)};
+}
+
+}  // namespace grainvdb
