@@ -15,7 +15,7 @@ enum class Reason : std::uint32_t {
   outside = 1u << 0,              ///< no kernel reaches the voxel
   no_material = 1u << 1,          ///< φ = 0: reached by contacts only; velocity, diameter, temperature, … undefined
   low_pressure = 1u << 2,         ///< P ≤ P_min: μ, I, g, gd/δv undefined
-  no_shear_stress = 1u << 3,      ///< |σ| = 0: μ = 0, g = |γ̇|/μ undefined
+  no_shear_stress = 1u << 3,      ///< μ = |σ|/P ≤ its minimum (isotropic to rounding): g = |γ̇|/μ undefined
   no_fluctuation = 1u << 4,       ///< T ≤ T_min: gd/δv undefined
   no_spin_fluctuation = 1u << 5,  ///< δω² ≤ its minimum: g/δω, δv/(d δω) undefined
   one_sided_gradient =

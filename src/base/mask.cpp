@@ -7,7 +7,7 @@ const std::vector<ReasonInfo>& reasons() {
       {Reason::outside, "outside", "no kernel reaches the voxel"},
       {Reason::no_material, "no_material", "phi = 0: no material particle within the cutoff"},
       {Reason::low_pressure, "low_pressure", "P <= P_min: ratios to the pressure undefined"},
-      {Reason::no_shear_stress, "no_shear_stress", "|sigma| = 0: fluidity undefined"},
+      {Reason::no_shear_stress, "no_shear_stress", "|sigma|/P <= its minimum: fluidity undefined"},
       {Reason::no_fluctuation, "no_fluctuation", "temperature <= its minimum: gd/dv undefined"},
       {Reason::no_spin_fluctuation, "no_spin_fluctuation", "spin fluctuation <= its minimum: ratios to it undefined"},
       {Reason::one_sided_gradient, "one_sided_gradient", "a neighbour is missing: one-sided derivative, less accurate"},
