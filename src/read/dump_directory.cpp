@@ -1,0 +1,206 @@
+/// The frames of a run: particle dumps and, on demand, the contact dumps of the same timesteps.
+#include <cmath>
+#include <set>
+
+#include "grainvdb/frame_source.hpp"
+#include "read/columns.hpp"
+#include "read/contact_table.hpp"
+#include "read/dump_series.hpp"
+#include "read/file_list.hpp"
+#include "read/particle_table.hpp"
+
+namespace grainvdb {
+namespace {
+
+/// What stands for the units when neither the dump nor the pipeline file names them: a field then says what it is, not
+/// in what.
+UnitSystem unnamed_units() {
+  return {"unspecified", "mass", "length", "time"};
+}
+
+std::string known_units() {
+  std::string text;
+  for (const UnitSystem& system : unit_systems()) text += (text.empty() ? "" : ", ") + system.name;
+  return text;
+}
+
+const UnitSystem& unit_system_in_dump(const Stated& stated) {
+  const UnitSystem* system = find_unit_system(stated.text);
+  if (system == nullptr)
+    throw InputError({stated.where, "the units are not supported", stated.text, known_units(),
+                      "In other unit systems of LAMMPS a stress is not mass/(length time²)"});
+  return *system;
+}
+
+UnitSystem choose_units(const InputSpec& spec, const std::optional<Stated>& stated) {
+  const UnitSystem* wanted = spec.units ? find_unit_system(*spec.units) : nullptr;
+  if (spec.units && wanted == nullptr)
+    throw ConfigError({stated_at(spec, "input.units"), "unknown units", *spec.units, known_units(), {}});
+  if (!stated) return wanted != nullptr ? *wanted : unnamed_units();
+  const UnitSystem& found = unit_system_in_dump(*stated);
+  if (wanted != nullptr && wanted->name != found.name) {
+    const std::string at = to_string(stated_at(spec, "input.units"));
+    throw InputError({stated->where,
+                      "the units are not those of the pipeline file",
+                      found.name,
+                      wanted->name + (at.empty() ? ", as input.units says" : ", as in " + at),
+                      {}});
+  }
+  return found;
+}
+
+void check_positive(const InputSpec& spec, const std::string& key, const std::optional<double>& value) {
+  if (value && !(*value > 0 && std::isfinite(*value)))
+    throw ConfigError({stated_at(spec, "input." + key),
+                       "input." + key + " is out of range",
+                       std::to_string(*value),
+                       "a finite number above 0",
+                       {}});
+}
+
+void check_spec(const InputSpec& spec) {
+  check_positive(spec, "dt", spec.dt);
+  check_positive(spec, "density", spec.density);
+  check_positive(spec, "radius", spec.radius);
+  check_contact_spec(spec);
+}
+
+/// The files that the input names, found without opening any.
+struct InputFiles {
+  std::vector<InputFile> particles, contacts;
+};
+
+/// Takes files out that were met in a directory but are known to belong elsewhere.
+void leave_out(std::vector<InputFile>& files, const std::set<FileIdentity>& elsewhere) {
+  std::erase_if(files, [&](const InputFile& file) { return !file.named && elsewhere.contains(file.identity); });
+}
+
+InputFiles find_files(const InputSpec& spec) {
+  InputFiles files{list_files(spec.particles, stated_at(spec, "input.particles")),
+                   list_files(spec.contacts.files, stated_at(spec, "input.contacts.files"))};
+  // So that a directory of particle dumps does not make contact dumps be opened that a glob has named.
+  std::set<FileIdentity> named_contacts;
+  for (const InputFile& file : files.contacts)
+    if (file.named) named_contacts.insert(file.identity);
+  leave_out(files.particles, named_contacts);
+  return files;
+}
+
+std::string joined(const std::vector<std::string>& patterns) {
+  std::string all;
+  for (const std::string& pattern : patterns) all += (all.empty() ? "'" : ", '") + pattern + "'";
+  return all;
+}
+
+class DumpDirectory final : public FrameSource {
+ public:
+  DumpDirectory(const InputSpec& spec, InputFiles files);
+
+  const std::vector<FrameInfo>& frames() const override { return frames_; }
+  const UnitSystem& units() const override { return units_; }
+  const std::vector<std::string>& particle_columns() const override {
+    return particles_.columns(particles_.frames().front());
+  }
+  std::vector<std::string> contact_columns() override { return contacts_->first_columns(); }
+  std::vector<std::pair<std::string, std::uintmax_t>> files() const override;
+  Frame read(std::size_t k, ColumnSet wanted) override;
+  const ReadCounters& counters() const override { return counters_; }
+
+ private:
+  Contacts read_contacts(std::int64_t step);
+
+  InputSpec spec_;
+  ReadCounters counters_;
+  DumpSeries particles_;
+  std::optional<DumpSeries> contacts_;  ///< made in the constructor, once it is known which files hold particles
+  UnitSystem units_;
+  std::vector<FrameInfo> frames_;
+};
+
+DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
+    : spec_(spec), particles_(std::move(files.particles), RowKind::particles, counters_) {
+  particles_.build_index();
+  if (particles_.frames().empty())
+    throw InputError(
+        {stated_at(spec, "input.particles"),
+         spec.particles.empty() ? "no particle dumps are given" : "no particle dump in " + joined(spec.particles),
+         {},
+         "paths, directories or globs of particle dumps",
+         {}});
+  std::set<FileIdentity> particle_files;
+  for (const InputFile& file : particles_.files()) particle_files.insert(file.identity);
+  leave_out(files.contacts, particle_files);
+  contacts_.emplace(std::move(files.contacts), RowKind::contacts, counters_);
+
+  units_ = choose_units(spec, particles_.units());
+  for (const FrameRecord& record : particles_.frames()) {
+    FrameInfo& info = frames_.emplace_back();
+    info.file = particles_.files()[record.file].path;
+    info.index_in_file = record.index_in_file;
+    info.step = record.step;
+    info.time = record.time;
+    if (!info.time && spec.dt) info.time = static_cast<double>(record.step) * *spec.dt;
+    info.particle_count = record.rows;
+    info.box = record.box;
+  }
+}
+
+std::vector<std::pair<std::string, std::uintmax_t>> DumpDirectory::files() const {
+  std::vector<std::pair<std::string, std::uintmax_t>> all;
+  for (const DumpSeries* series : {&particles_, &*contacts_})
+    for (const InputFile& file : series->files()) all.emplace_back(file.path, file.size);
+  return all;
+}
+
+Frame DumpDirectory::read(std::size_t k, ColumnSet wanted) {
+  const FrameInfo& info = frames_.at(k);
+  const FrameHeader& header = particles_.go_to(k);
+  const ParticleLayout layout = particle_layout(header, info.file, spec_, wanted);
+  Frame frame;
+  frame.file = info.file;
+  frame.step = info.step;
+  frame.time = info.time;
+  frame.box = info.box;
+  frame.particles = make_particles(layout, particles_.read_rows(layout.request), header, info.file);
+  if (wanted.has(Column::contacts)) frame.contacts = read_contacts(info.step);
+  ++counters_.frames_read;
+  return frame;
+}
+
+Contacts DumpDirectory::read_contacts(std::int64_t step) {
+  const Location where = stated_at(spec_, "input.contacts.files");
+  if (spec_.contacts.files.empty())
+    throw InputError({where,
+                      "contacts are needed but no contact dumps are given",
+                      {},
+                      "input.contacts.files",
+                      "Name the contact dumps in the pipeline file"});
+  contacts_->build_index();
+  if (contacts_->units() && find_unit_system(units_.name) != nullptr && contacts_->units()->text != units_.name)
+    throw InputError({contacts_->units()->where,
+                      "the units are not those of the particle dumps",
+                      contacts_->units()->text,
+                      units_.name,
+                      {}});
+  const std::optional<std::size_t> k = contacts_->find(step);
+  if (!k)
+    throw InputError({where, "no contact dump has timestep " + std::to_string(step),
+                      std::to_string(contacts_->frames().size()) + " other timesteps in the " +
+                          std::to_string(contacts_->files().size()) + " contact files of " +
+                          joined(spec_.contacts.files),
+                      "one contact frame for every particle frame that is used",
+                      "Choose the frames that have contacts, or fields that need none"});
+  const FrameHeader& header = contacts_->go_to(*k);
+  const std::string& file = contacts_->files()[contacts_->frames()[*k].file].path;
+  const ContactLayout layout = contact_layout(header, file, spec_);
+  return make_contacts(layout, contacts_->read_rows(layout.request), header, file);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_dumps(const InputSpec& spec) {
+  check_spec(spec);
+  return std::make_unique<DumpDirectory>(spec, find_files(spec));
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,190 @@
+#include "read/dump_series.hpp"
+
+#include <algorithm>
+
+#include "grainvdb/error.hpp"
+
+namespace grainvdb {
+namespace {
+
+/// How many times as many bytes per row a file may have as one of its kind that is known to hold one frame.
+constexpr double spread = 1.25;
+/// Smaller files are read through whatever they hold: it costs no more than their header.
+constexpr std::uintmax_t small_file = std::uintmax_t{1} << 14;
+
+const char* plural(RowKind kind) {
+  return kind == RowKind::particles ? "particles" : "contacts";
+}
+
+}  // namespace
+
+DumpSeries::DumpSeries(std::vector<InputFile> files, RowKind kind, ReadCounters& counters)
+    : files_(std::move(files)), kind_(kind), counters_(counters) {}
+
+/// Opens a file in place of the one that is open. False when its format is not recognised.
+bool DumpSeries::open(std::size_t file) {
+  open_file_.reset();
+  dump_ = open_dump(files_[file].path, counters_);
+  if (!dump_.dump) return false;
+  open_file_ = file;
+  return true;
+}
+
+void DumpSeries::build_index() {
+  if (indexed_) return;
+  frames_.clear();
+  std::map<FileClass, double> bytes_per_row;
+  std::vector<bool> used(files_.size(), false);
+  for (std::size_t file = 0; file < files_.size(); ++file) {
+    const std::size_t before = frames_.size();
+    index_file(file, bytes_per_row);
+    used[file] = frames_.size() > before;
+  }
+  open_file_.reset();
+  dump_ = {};
+
+  std::vector<std::size_t> new_number(files_.size());
+  std::vector<InputFile> kept;
+  for (std::size_t file = 0; file < files_.size(); ++file) {
+    new_number[file] = kept.size();
+    if (used[file]) kept.push_back(files_[file]);
+  }
+  for (FrameRecord& frame : frames_) frame.file = new_number[frame.file];
+  files_ = std::move(kept);
+  sort_frames();
+  indexed_ = true;
+}
+
+void DumpSeries::index_file(std::size_t file, std::map<FileClass, double>& bytes_per_row) {
+  const InputFile& input = files_[file];
+  if (!open(file)) {
+    if (input.named) refuse_unrecognised(input.path, dump_.head);
+    return;
+  }
+  std::optional<FileClass> file_class;
+  std::size_t count = 0;
+  bool whole = true;
+  while (const std::optional<FrameHeader> header = dump_.dump->next_header()) {
+    if (header->kind != kind_) {
+      if (input.named) refuse_kind(*header, input.path);
+      return;
+    }
+    note_units(*header, input.path);
+    const std::size_t columns = column_set(header->columns);
+    frames_.push_back(
+        {file, count++, false, header->start, header->step, header->time, header->rows, header->box, columns});
+    if (count == 1) {
+      file_class = FileClass{columns, dump_.compression};
+      const auto known = bytes_per_row.find(*file_class);
+      if (input.size > small_file && known != bytes_per_row.end() &&
+          static_cast<double>(input.size) <= spread * known->second * static_cast<double>(header->rows)) {
+        frames_.back().last_in_file = true;
+        return;
+      }
+    }
+    // Missing rows are an error only for those who read the frame.
+    whole = dump_.dump->skip_rows() && whole;
+  }
+  if (count == 0) return;
+  frames_.back().last_in_file = true;
+  const std::size_t rows = frames_.back().rows;
+  if (count == 1 && whole && rows > 0) {
+    double& most = bytes_per_row[*file_class];
+    most = std::max(most, static_cast<double>(input.size) / static_cast<double>(rows));
+  }
+}
+
+void DumpSeries::note_units(const FrameHeader& header, const std::string& path) {
+  if (!header.units) return;
+  const Location here{path, header.units_line};
+  if (!units_)
+    units_ = Stated{*header.units, here};
+  else if (units_->text != *header.units)
+    throw InputError({here,
+                      "the units are not those of the other dumps",
+                      *header.units,
+                      units_->text + ", as in " + to_string(units_->where),
+                      {}});
+}
+
+std::size_t DumpSeries::column_set(const std::vector<std::string>& columns) {
+  const auto it = std::find(column_sets_.begin(), column_sets_.end(), columns);
+  if (it != column_sets_.end()) return static_cast<std::size_t>(it - column_sets_.begin());
+  column_sets_.push_back(columns);
+  return column_sets_.size() - 1;
+}
+
+void DumpSeries::refuse_kind(const FrameHeader& header, const std::string& path) const {
+  throw InputError({{path, header.columns_line},
+                    std::string("a dump of ") + plural(header.kind) + " is listed among the " + plural(kind_),
+                    {},
+                    std::string("a dump of ") + plural(kind_),
+                    "Correct the paths or globs of the input"});
+}
+
+void DumpSeries::sort_frames() {
+  std::stable_sort(frames_.begin(), frames_.end(),
+                   [](const FrameRecord& a, const FrameRecord& b) { return a.step < b.step; });
+  const auto twice = std::adjacent_find(frames_.begin(), frames_.end(),
+                                        [](const FrameRecord& a, const FrameRecord& b) { return a.step == b.step; });
+  if (twice == frames_.end()) return;
+  const Location first{files_[twice->file].path, twice->start.line};
+  const Location second{files_[(twice + 1)->file].path, (twice + 1)->start.line};
+  throw InputError({second, "timestep " + std::to_string(twice->step) + " comes twice",
+                    "it also in " + to_string(first), "each timestep once", "Correct the paths or globs of the input"});
+}
+
+std::optional<std::size_t> DumpSeries::find(std::int64_t step) const {
+  const auto it = std::lower_bound(frames_.begin(), frames_.end(), step,
+                                   [](const FrameRecord& frame, std::int64_t s) { return frame.step < s; });
+  if (it == frames_.end() || it->step != step) return std::nullopt;
+  return static_cast<std::size_t>(it - frames_.begin());
+}
+
+std::vector<std::string> DumpSeries::first_columns() {
+  for (std::size_t file = 0; file < files_.size(); ++file) {
+    if (!open(file)) {
+      if (files_[file].named) refuse_unrecognised(files_[file].path, dump_.head);
+      continue;
+    }
+    const std::optional<FrameHeader> header = dump_.dump->next_header();
+    if (header && header->kind == kind_) return header->columns;
+    if (header && files_[file].named) refuse_kind(*header, files_[file].path);
+  }
+  return {};
+}
+
+const FrameHeader& DumpSeries::go_to(std::size_t k) {
+  const FrameRecord& frame = frames_[k];
+  const std::string& path = files_[frame.file].path;
+  if (open_file_ != frame.file && !open(frame.file)) refuse_unrecognised(path, dump_.head);
+  dump_.dump->seek(frame.start);
+  std::optional<FrameHeader> header = dump_.dump->next_header();
+  if (!header || header->step != frame.step || header->rows != frame.rows || header->kind != kind_)
+    throw InputError({{path, frame.start.line},
+                      "the file has changed since it was indexed",
+                      {},
+                      "the frame of timestep " + std::to_string(frame.step),
+                      {}});
+  header_ = std::move(*header);
+  current_ = k;
+  return header_;
+}
+
+Table DumpSeries::read_rows(const TableRequest& request) {
+  const FrameRecord& frame = frames_[current_];
+  Table table = dump_.dump->read_rows(request);
+  if (frame.last_in_file && !dump_.dump->at_end())
+    throw InputError({{files_[frame.file].path, table.first_line + table.rows},
+                      "the file holds another frame, much smaller than its first",
+                      {},
+                      "one frame, as in the other files of the input",
+                      "Split the file"});
+  const auto note = [&](std::size_t column) { counters_.columns_parsed.insert(header_.columns[column]); };
+  std::for_each(request.real.begin(), request.real.end(), note);
+  std::for_each(request.whole.begin(), request.whole.end(), note);
+  counters_.rows_read += table.rows;
+  return table;
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,56 @@
+#pragma once
+/// Numbers in text, independent of the locale. A number must fill its whole token: "1.5e" is not 1.5.
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include <fast_float/fast_float.h>
+
+namespace grainvdb {
+
+/// What separates the fields of a line; a carriage return counts, so that lines may end in CRLF.
+constexpr bool is_blank(char c) {
+  return c == ' ' || c == '\t' || c == '\r';
+}
+
+/// Parses the token that begins at p. Returns its end, or nullptr when it is not one finite decimal number.
+inline const char* parse_real(const char* p, const char* end, double& value) {
+  if (p != end && *p == '+') {
+    ++p;
+    if (p != end && *p == '-') return nullptr;
+  }
+  const auto [next, error] = fast_float::from_chars(p, end, value);
+  if (error != std::errc() || !(next == end || is_blank(*next)) || !std::isfinite(value)) return nullptr;
+  return next;
+}
+
+/// Parses the token that begins at p as a whole number, written with or without a fraction of zeros ("561", "561.0").
+/// Exponents are refused: "1e+06" may stand for any number that rounds to it. Returns its end, or nullptr.
+inline const char* parse_whole(const char* p, const char* end, std::int64_t& value) {
+  if (p != end && *p == '+') {
+    ++p;
+    if (p != end && *p == '-') return nullptr;
+  }
+  auto [next, error] = std::from_chars(p, end, value);
+  if (error != std::errc()) return nullptr;
+  if (next != end && *next == '.') {
+    ++next;
+    while (next != end && *next == '0') ++next;
+  }
+  return next == end || is_blank(*next) ? next : nullptr;
+}
+
+/// The same for a text that is the token.
+bool parse_real(std::string_view token, double& value);
+bool parse_whole(std::string_view token, std::int64_t& value);
+
+/// Takes the next token off the front of a line; empty at its end.
+std::string_view take_token(std::string_view& line);
+
+/// A text as error messages show it: in quotes, cut after 40 characters, unprintable bytes as \xNN.
+std::string quoted(std::string_view text);
+
+}  // namespace grainvdb

@@ -1,0 +1,216 @@
+#include "read/particle_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <vector>
+
+#include "grainvdb/error.hpp"
+#include "read/columns.hpp"
+
+namespace grainvdb {
+namespace {
+
+using Names3 = std::array<std::string, 3>;
+
+/// Families of position columns in order of preference: as they are, unwrapped, scaled, scaled and unwrapped.
+struct PositionFamily {
+  Names3 names;
+  bool scaled;
+};
+const std::array<PositionFamily, 4>& position_families() {
+  static const std::array<PositionFamily, 4> families{{{{"x", "y", "z"}, false},
+                                                       {{"xu", "yu", "zu"}, false},
+                                                       {{"xs", "ys", "zs"}, true},
+                                                       {{"xsu", "ysu", "zsu"}, true}}};
+  return families;
+}
+
+/// What is missing, gathered so that one error names it all.
+class Missing {
+ public:
+  void add(const std::string& what, const std::string& hint) {
+    what_ += (what_.empty() ? "" : "; ") + what;
+    if (!hint.empty()) hints_ += (hints_.empty() ? "" : ". ") + hint;
+  }
+  void refuse(const ColumnFinder& finder) const {
+    if (what_.empty()) return;
+    throw InputError({finder.location(), "the dump lacks columns that are needed", finder.names(), what_, hints_});
+  }
+
+ private:
+  std::string what_, hints_;
+};
+
+void find_position(ColumnFinder& finder, ParticleLayout& layout, Missing& missing) {
+  for (const PositionFamily& family : position_families()) {
+    if (!finder.has_all(family.names)) continue;
+    layout.position = finder.real3(family.names);
+    layout.scaled = family.scaled;
+    return;
+  }
+  missing.add("x y z (or xu yu zu, xs ys zs, xsu ysu zsu)", {});
+}
+
+void find_radius(ColumnFinder& finder, const InputSpec& spec, ParticleLayout& layout, Missing& missing) {
+  if (finder.has("radius")) {
+    layout.radius = finder.real("radius");
+  } else if (finder.has("diameter")) {
+    layout.radius = finder.real("diameter");
+    layout.radius_factor = 0.5;
+  } else if (spec.radius) {
+    layout.common_radius = *spec.radius;
+  } else {
+    missing.add("radius or diameter", "Set input.radius if all grains have the same");
+  }
+}
+
+/// Without masses, m = ρ 4/3 π r³ needs the radii too.
+void find_mass(ColumnFinder& finder, const InputSpec& spec, ParticleLayout& layout, Missing& missing) {
+  if (finder.has("mass")) {
+    layout.mass = finder.real("mass");
+    return;
+  }
+  if (finder.has("density")) {
+    layout.density = finder.real("density");
+  } else if (spec.density) {
+    layout.common_density = *spec.density;
+  } else {
+    missing.add("mass or density", "Set input.density if all grains have the same");
+    return;
+  }
+  if (!layout.wanted.has(Column::radius)) find_radius(finder, spec, layout, missing);
+}
+
+void find_vector(ColumnFinder& finder, const Names3& names, std::optional<std::array<std::size_t, 3>>& to,
+                 Missing& missing) {
+  if (finder.has_all(names))
+    to = finder.real3(names);
+  else
+    missing.add(names[0] + " " + names[1] + " " + names[2], {});
+}
+
+std::string shown(double value) {
+  char text[32];
+  const auto end = std::to_chars(std::begin(text), std::end(text), value).ptr;
+  return {std::begin(text), end};
+}
+
+void check_positive(const std::vector<double>& values, const std::string& column, std::size_t first_line,
+                    const std::string& file) {
+  const auto bad = std::find_if(values.begin(), values.end(), [](double value) { return !(value > 0); });
+  if (bad == values.end()) return;
+  const auto row = static_cast<std::size_t>(bad - values.begin());
+  throw InputError({{file, first_line + row}, "bad value in column " + column, shown(*bad), "a number above 0", {}});
+}
+
+/// The order of ascending ids. Throws InputError for an id that comes twice.
+std::vector<std::size_t> order_by_id(const std::vector<std::int64_t>& id, std::size_t first_line,
+                                     const std::string& file) {
+  std::vector<std::size_t> order(id.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto less = [&](std::size_t a, std::size_t b) { return id[a] != id[b] ? id[a] < id[b] : a < b; };
+  if (!std::is_sorted(order.begin(), order.end(), less)) std::sort(order.begin(), order.end(), less);
+  const auto twice =
+      std::adjacent_find(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return id[a] == id[b]; });
+  if (twice != order.end())
+    throw InputError({{file, first_line + *(twice + 1)},
+                      "the particle id " + std::to_string(id[*twice]) + " comes twice in one frame",
+                      "it also on line " + std::to_string(first_line + *twice),
+                      "each id once",
+                      {}});
+  return order;
+}
+
+}  // namespace
+
+ParticleLayout particle_layout(const FrameHeader& header, const std::string& file, const InputSpec& spec,
+                               ColumnSet wanted) {
+  ColumnFinder finder(header, file);
+  ParticleLayout layout;
+  layout.wanted = wanted;
+  Missing missing;
+  if (finder.has("id"))
+    layout.id = finder.whole("id");
+  else
+    missing.add("id", {});
+  find_position(finder, layout, missing);
+  if (wanted.has(Column::velocity)) find_vector(finder, {"vx", "vy", "vz"}, layout.velocity, missing);
+  if (wanted.has(Column::angular_velocity))
+    find_vector(finder, {"omegax", "omegay", "omegaz"}, layout.angular_velocity, missing);
+  if (wanted.has(Column::radius)) find_radius(finder, spec, layout, missing);
+  if (wanted.has(Column::mass)) find_mass(finder, spec, layout, missing);
+  if (wanted.has(Column::type)) {
+    if (finder.has("type"))
+      layout.type = finder.whole("type");
+    else
+      missing.add("type", {});
+  }
+  missing.refuse(finder);
+  layout.request = finder.request();
+  return layout;
+}
+
+Particles make_particles(const ParticleLayout& layout, const Table& table, const FrameHeader& header,
+                         const std::string& file) {
+  const auto column_name = [&](std::size_t real) -> const std::string& {
+    return header.columns[layout.request.real[real]];
+  };
+  const std::size_t n = table.rows;
+  const std::vector<std::int64_t>& id = table.whole[layout.id];
+  check_ids(id, "id", table.first_line, file);
+  const std::vector<std::size_t> order = order_by_id(id, table.first_line, file);
+
+  Particles particles;
+  particles.id = gathered(id, order);
+  const auto gather3 = [&](const std::array<std::size_t, 3>& from, Columns3& to) {
+    for (std::size_t a = 0; a < 3; ++a) to[a] = gathered(table.real[from[a]], order);
+  };
+  gather3(layout.position, particles.position);
+  if (layout.scaled)
+    for (std::size_t a = 0; a < 3; ++a)
+      for (double& x : particles.position[a]) x = header.box.lo[a] + x * (header.box.hi[a] - header.box.lo[a]);
+  if (layout.velocity) gather3(*layout.velocity, particles.velocity);
+  if (layout.angular_velocity) gather3(*layout.angular_velocity, particles.angular_velocity);
+
+  std::vector<double> radius;
+  if (layout.radius) {
+    check_positive(table.real[*layout.radius], column_name(*layout.radius), table.first_line, file);
+    radius = gathered(table.real[*layout.radius], order);
+    for (double& r : radius) r *= layout.radius_factor;
+  } else if (layout.common_radius > 0) {
+    radius.assign(n, layout.common_radius);
+  }
+  if (layout.mass) {
+    check_positive(table.real[*layout.mass], column_name(*layout.mass), table.first_line, file);
+    particles.mass = gathered(table.real[*layout.mass], order);
+  } else if (layout.wanted.has(Column::mass)) {
+    if (layout.density)
+      check_positive(table.real[*layout.density], column_name(*layout.density), table.first_line, file);
+    particles.mass =
+        layout.density ? gathered(table.real[*layout.density], order) : std::vector<double>(n, layout.common_density);
+    for (std::size_t i = 0; i < n; ++i)
+      particles.mass[i] *= 4.0 / 3.0 * std::numbers::pi * radius[i] * radius[i] * radius[i];
+  }
+  if (layout.wanted.has(Column::radius)) particles.radius = std::move(radius);
+
+  if (layout.type) {
+    const std::vector<std::int64_t>& type = table.whole[*layout.type];
+    const auto bad = std::find_if(type.begin(), type.end(), [](std::int64_t t) {
+      return t < std::numeric_limits<int>::min() || t > std::numeric_limits<int>::max();
+    });
+    if (bad != type.end())
+      throw InputError({{file, table.first_line + static_cast<std::size_t>(bad - type.begin())},
+                        "bad value in column type",
+                        std::to_string(*bad),
+                        "a particle type",
+                        {}});
+    particles.type.resize(n);
+    for (std::size_t i = 0; i < n; ++i) particles.type[i] = static_cast<int>(type[order[i]]);
+  }
+  return particles;
+}
+
+}  // namespace grainvdb
