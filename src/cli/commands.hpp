@@ -1,0 +1,25 @@
+#pragma once
+/// The subcommands. Each adds itself to the application; its work is done in a callback that runs once the whole
+/// command line has been understood, and reports failure by throwing.
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace grainvdb::cli {
+
+void add_run(CLI::App& app);
+void add_info(CLI::App& app);
+void add_validate(CLI::App& app);
+void add_stages(CLI::App& app);
+void add_graph(CLI::App& app);
+void add_schema(CLI::App& app);
+
+/// The argument PIPELINE and the option --set, as several subcommands take them.
+struct PipelineArguments {
+  std::string file;
+  std::vector<std::string> overrides;
+};
+void add_pipeline_arguments(CLI::App& command, PipelineArguments& arguments);
+
+}  // namespace grainvdb::cli

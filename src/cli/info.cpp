@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <iostream>
+#include <locale>
+#include <memory>
+#include <sstream>
+
+#include "cli/commands.hpp"
+#include "grainvdb/frame_source.hpp"
+
+namespace grainvdb::cli {
+namespace {
+
+constexpr const char* footer = R"(Examples:
+  grainvdb info dumps/
+  grainvdb info 'dumps/dump*.liggghts' --contacts 'dumps/contacts*.liggghts'
+  grainvdb info run.dump.gz --list)";
+
+struct Options {
+  InputSpec input;
+  bool list = false;
+};
+
+struct OpenedDumps {
+  std::unique_ptr<FrameSource> source;
+  bool units_known = true;
+};
+
+// A look at a dump must not fail for want of a unit system; nothing below depends on it.
+OpenedDumps open_any_units(InputSpec spec) {
+  try {
+    return {open_dumps(spec), true};
+  } catch (const InputError&) {
+    if (spec.units) throw;
+    spec.units = "si";
+    return {open_dumps(spec), false};
+  }
+}
+
+std::string frame_text(const FrameInfo& frame) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(9);
+  text << "step " << frame.step;
+  if (frame.time) text << ", time " << *frame.time;
+  text << ", " << frame.particle_count << " particles";
+  return text.str();
+}
+
+std::string box_text(const Box& box) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(9);
+  for (int a = 0; a < 3; ++a)
+    text << (a > 0 ? ", " : "") << "xyz"[a] << ' ' << box.lo[a] << " ... " << box.hi[a]
+         << (box.periodic[a] ? " periodic" : "");
+  return text.str();
+}
+
+void print_steps(const std::vector<FrameInfo>& frames) {
+  if (frames.size() < 2) return;
+  std::int64_t least = frames[1].step - frames[0].step, most = least;
+  for (std::size_t k = 1; k < frames.size(); ++k) {
+    const std::int64_t gap = frames[k].step - frames[k - 1].step;
+    least = std::min(least, gap);
+    most = std::max(most, gap);
+  }
+  std::cout << "spacing: " << least;
+  if (most != least) std::cout << " ... " << most;
+  std::cout << " steps\n";
+}
+
+void print_frames(const std::vector<FrameInfo>& frames, bool list) {
+  std::cout << "frames: " << frames.size() << '\n';
+  if (list) {
+    for (const FrameInfo& frame : frames) std::cout << "  " << frame_text(frame) << "  " << frame.file << '\n';
+  } else {
+    std::cout << "  first " << frame_text(frames.front()) << '\n';
+    std::cout << "  last  " << frame_text(frames.back()) << '\n';
+  }
+  print_steps(frames);
+  const auto [fewest, most] = std::minmax_element(
+      frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.particle_count < b.particle_count; });
+  std::cout << "particles: " << fewest->particle_count;
+  if (most->particle_count != fewest->particle_count) std::cout << " ... " << most->particle_count;
+  std::cout << '\n';
+  const bool same_box =
+      std::all_of(frames.begin(), frames.end(), [&](const auto& f) { return f.box == frames[0].box; });
+  std::cout << "box: " << box_text(frames.front().box) << (same_box ? "" : " (changes)") << '\n';
+}
+
+void print_columns(const char* what, const std::vector<std::string>& columns) {
+  std::cout << what << ": ";
+  for (std::size_t i = 0; i < columns.size(); ++i) std::cout << (i > 0 ? " " : "") << columns[i];
+  std::cout << " (" << columns.size() << ")\n";
+}
+
+void info(const Options& options) {
+  const OpenedDumps dumps = open_any_units(options.input);
+  print_frames(dumps.source->frames(), options.list);
+  print_columns("columns", dumps.source->particle_columns());
+  const std::vector<std::string> contact_columns = dumps.source->contact_columns();
+  if (!contact_columns.empty()) print_columns("contact columns", contact_columns);
+  std::cout << "units: "
+            << (dumps.units_known ? dumps.source->units().name : "not in the dump; the pipeline file must say") << '\n';
+  std::uintmax_t bytes = 0;
+  for (const auto& [file, size] : dumps.source->files()) bytes += size;
+  std::cout << "files: " << dumps.source->files().size() << ", " << bytes << " bytes\n";
+}
+
+}  // namespace
+
+void add_info(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("info", "Say what is in dump files");
+  const auto options = std::make_shared<Options>();
+  command->add_option("dumps", options->input.particles, "Particle dumps: files, folders or patterns")
+      ->required()
+      ->type_name("DUMPS");
+  command->add_option("--contacts", options->input.contacts.files, "Contact dumps: files, folders or patterns")
+      ->type_name("DUMPS");
+  command->add_option("--dt", options->input.dt, "Time per step, for dumps without times")
+      ->type_name("TIME")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--list", options->list, "List every frame");
+  command->footer(footer);
+  command->callback([options] { info(*options); });
+}
+
+}  // namespace grainvdb::cli

@@ -1,0 +1,128 @@
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "grainvdb/error.hpp"
+#include "grainvdb/version.hpp"
+#include "pipeline/text.hpp"
+
+namespace grainvdb::cli {
+namespace {
+
+enum ExitCode { bad_usage = 1, io_failed = 3, limit_refused = 4, unexpected = 5 };
+
+constexpr const char* footer = R"(Examples:
+  grainvdb info dumps/
+  grainvdb validate pipelines/shear_cell.yaml
+  grainvdb run pipelines/shear_cell.yaml --output result
+  grainvdb run pipelines/shear_cell.yaml --set kernel.cutoff=3e-3 --frames ::2
+
+Exit codes:
+  0    done
+  1    bad usage, or a pipeline file that cannot be run as written
+  2    bad input: a dump is malformed, or lacks what the pipeline needs
+  3    the operating system refused to open, read or write a file
+  4    a limit was exceeded, or memory ran out
+  5    an unexpected failure inside grainvdb
+  130  interrupted (128 plus the number of the signal))";
+
+int fail(int code, const std::string& message) {
+  std::cout.flush();
+  std::cerr << "grainvdb: " << message << '\n';
+  return code;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+// Options of the application and of the subcommands that were named.
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  const auto add = [&](const CLI::App& a) {
+    for (const CLI::Option* option : a.get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  };
+  add(app);
+  for (const CLI::App* command : app.get_subcommands()) add(*command);
+  return names;
+}
+
+int bad_command_line(const CLI::App& app, const CLI::ParseError& error) {
+  std::string message = error.what();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
+    const std::vector<std::string> rest = app.remaining(true);
+    const bool no_command = app.get_subcommands().empty();
+    if (!rest.empty()) {
+      const std::string& word = rest.front();
+      const bool is_option = word.starts_with('-');
+      const std::string guess = did_you_mean(word.substr(0, word.find('=')), is_option    ? option_names(app)
+                                                                             : no_command ? command_names(app)
+                                                                                          : std::vector<std::string>{});
+      message = std::string(is_option    ? "unknown option "
+                            : no_command ? "unknown command "
+                                         : "unexpected argument ") +
+                in_quotes(word) + (guess.empty() ? "" : ". " + guess);
+    }
+  }
+  std::string command = "grainvdb";
+  for (const CLI::App* sub : app.get_subcommands()) command += ' ' + sub->get_name();
+  return fail(bad_usage, message + "\nRun '" + command + " --help' for usage.");
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Continuum fields from particle snapshots of granular flow.", "grainvdb");
+  app.set_version_flag("--version", "grainvdb " GRAINVDB_VERSION);
+  app.footer(footer);
+  app.require_subcommand(1);
+  add_run(app);
+  add_info(app);
+  add_validate(app);
+  add_stages(app);
+  add_graph(app);
+  add_schema(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {  // --help and --version
+    app.exit(wanted, std::cout, std::cerr);
+  } catch (const CLI::ParseError& error) {
+    return bad_command_line(app, error);
+  } catch (const Error& error) {
+    return fail(error.exit_code(), error.what());
+  } catch (const Interrupted& interrupted) {
+    return fail(128 + interrupted.signal, "interrupted; nothing was written");
+  } catch (const std::bad_alloc&) {
+    return fail(limit_refused, "memory ran out. Use larger voxels, fewer fields or a smaller region.");
+  } catch (const std::exception& error) {
+    return fail(unexpected, std::string("unexpected failure: ") + error.what());
+  }
+  if (!std::cout.flush()) return fail(io_failed, "cannot write to the standard output");
+  return 0;
+}
+
+}  // namespace
+
+void add_pipeline_arguments(CLI::App& command, PipelineArguments& arguments) {
+  command.add_option("pipeline", arguments.file, "The pipeline file")->required()->type_name("PIPELINE");
+  command
+      .add_option(
+          "--set", arguments.overrides,
+          "Set a key of the pipeline file, e.g. kernel.cutoff=2.4e-3 or output.fields=[phi,velocity]; wins over "
+          "the file, may be repeated")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)
+      ->take_all();
+}
+
+}  // namespace grainvdb::cli
+
+int main(int argc, char** argv) {
+  return grainvdb::cli::run(argc, argv);
+}

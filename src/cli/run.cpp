@@ -1,0 +1,87 @@
+#include "grainvdb/run.hpp"
+
+#include <algorithm>
+#include <iostream>
+#include <memory>
+#include <optional>
+
+#include <tbb/global_control.h>
+
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/output_folder.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/report.hpp"
+
+namespace grainvdb::cli {
+namespace {
+
+constexpr const char* footer = R"(Examples:
+  grainvdb run pipelines/shear_cell.yaml
+  grainvdb run pipelines/shear_cell.yaml --output result --threads 4
+  grainvdb run pipelines/shear_cell.yaml --frames -10: --set lattice.voxel=0.8e-3
+  grainvdb run pipelines/shear_cell.yaml --set output.fields=[phi,velocity]
+
+Files appear under their names only when they are complete. Ctrl-C ends the run after the frame at hand and leaves no
+file; a second Ctrl-C ends it at once and may leave a temporary one.)";
+
+struct Options {
+  PipelineArguments pipeline;
+  std::string output = "output";
+  std::string frames;
+  std::size_t threads = 0;
+  bool quiet = false;
+};
+
+std::vector<std::unique_ptr<FieldSink>> make_sinks(const Pipeline& pipeline, const std::string& folder) {
+  std::vector<std::unique_ptr<FieldSink>> sinks;
+  for (const std::string& format : pipeline.formats)
+    for (const SinkInfo& sink : sink_registry())
+      if (sink.name == format) sinks.push_back(sink.make(folder));
+  return sinks;
+}
+
+void run(const Options& options) {
+  std::optional<tbb::global_control> threads;
+  if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
+
+  std::vector<std::string> overrides = options.pipeline.overrides;
+  if (!options.frames.empty()) overrides.push_back("frames=" + options.frames);
+  const Pipeline pipeline = load_pipeline(options.pipeline.file, overrides);
+  const Plan plan = make_plan(pipeline);
+  check_output_folder(options.output);
+  const auto source = open_dumps(pipeline.input);
+  const auto sinks = make_sinks(pipeline, options.output);
+
+  watch_for_interrupts();
+  RunReport report;
+  {
+    ProgressLine line(stderr);
+    report = run_pipeline(pipeline, plan, *source, sinks, [&](const Progress& progress) {
+      check_for_interrupt();
+      if (!options.quiet) line.show(progress);
+    });
+  }
+  if (!options.quiet) std::cout << describe(report);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("run", "Run a pipeline: read dumps, compute fields, write them");
+  const auto options = std::make_shared<Options>();
+  add_pipeline_arguments(*command, options->pipeline);
+  command->add_option("-o,--output", options->output, "Folder for the results; made where there is none")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_option("--frames", options->frames, "Frames first:end:step, short for --set frames=...")
+      ->type_name("A:B:C");
+  command->add_option("--threads", options->threads, "Threads to use; all processors by default")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
+  command->footer(footer);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace grainvdb::cli

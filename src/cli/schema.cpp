@@ -1,0 +1,70 @@
+#include <iostream>
+#include <memory>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "grainvdb/pipeline.hpp"
+
+namespace grainvdb::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr const char* footer = R"(Examples:
+  grainvdb schema > grainvdb.schema.json
+  grainvdb schema --text
+
+Editors check pipeline files against the schema when it is named in their first line:
+  # yaml-language-server: $schema=grainvdb.schema.json)";
+
+// What a value may be, from its part of the schema.
+std::string type_text(const Json& value) {
+  if (value.contains("anyOf")) {
+    std::string text;
+    for (const Json& one : value["anyOf"]) text += (text.empty() ? "" : " or ") + type_text(one);
+    return text;
+  }
+  if (value.contains("const")) return value["const"].get<std::string>();
+  if (value.contains("enum")) {
+    std::string text;
+    for (const Json& one : value["enum"]) text += (text.empty() ? "" : " | ") + one.get<std::string>();
+    return text;
+  }
+  const auto type = value.value("type", std::string());
+  return type == "array" ? "list of " + type_text(value["items"]) : type;
+}
+
+void print_section(const Json& section, const std::string& indent) {
+  const Json required = section.value("required", Json::array());
+  for (const auto& [name, value] : section["properties"].items()) {
+    const bool is_required = std::find(required.begin(), required.end(), name) != required.end();
+    std::cout << indent << name << ':';
+    if (value.contains("properties")) {
+      std::cout << (is_required ? "  (required)" : "") << "  # " << value["description"].get<std::string>() << '\n';
+      print_section(value, indent + "  ");
+      continue;
+    }
+    std::cout << ' ' << type_text(value);
+    if (is_required) std::cout << "  (required)";
+    if (value.contains("default")) std::cout << "  (default " << value["default"].dump() << ')';
+    std::cout << "\n" << indent << "    " << value["description"].get<std::string>() << '\n';
+  }
+}
+
+}  // namespace
+
+void add_schema(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("schema", "Print the schema of pipeline files, as JSON Schema (draft 7)");
+  const auto text = std::make_shared<bool>(false);
+  command->add_flag("--text", *text, "Print every key with its type, default and help instead");
+  command->footer(footer);
+  command->callback([text] {
+    if (*text)
+      print_section(Json::parse(pipeline_schema()), "");
+    else
+      std::cout << pipeline_schema();
+  });
+}
+
+}  // namespace grainvdb::cli

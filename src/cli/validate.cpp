@@ -1,0 +1,47 @@
+#include <iostream>
+#include <memory>
+
+#include "cli/commands.hpp"
+#include "grainvdb/run.hpp"
+
+namespace grainvdb::cli {
+namespace {
+
+constexpr const char* footer = R"(Examples:
+  grainvdb validate pipelines/shear_cell.yaml
+  grainvdb validate pipelines/shear_cell.yaml --no-input --set kernel.cutoff=3e-3
+
+Prints 'valid' and exits with 0 only when the pipeline can be run. The first selected frame is read with all the columns
+that the run will need; later frames are not.)";
+
+struct Options {
+  PipelineArguments pipeline;
+  bool no_input = false;
+};
+
+void validate(const Options& options) {
+  const Pipeline pipeline = load_pipeline(options.pipeline.file, options.pipeline.overrides);
+  const Plan plan = make_plan(pipeline);
+  if (!options.no_input) {
+    const auto source = open_dumps(pipeline.input);
+    check_against_input(pipeline, plan, *source);
+    ColumnSet columns;
+    for (const Sweep& sweep : plan.sweeps) columns |= sweep.columns;
+    source->read(select_frames(pipeline.frames, source->frames().size()).front(), columns);
+  }
+  std::cout << "valid\n";
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("validate", "Check a pipeline file, and its dumps against it, without running");
+  const auto options = std::make_shared<Options>();
+  add_pipeline_arguments(*command, options->pipeline);
+  command->add_flag("--no-input", options->no_input, "Do not look at the dumps");
+  command->footer(footer);
+  command->callback([options] { validate(*options); });
+}
+
+}  // namespace grainvdb::cli

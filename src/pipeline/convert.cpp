@@ -1,0 +1,139 @@
+#include "pipeline/convert.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+#include <utility>
+
+#include "pipeline/frame_range.hpp"
+#include "pipeline/number.hpp"
+#include "pipeline/text.hpp"
+
+namespace grainvdb {
+namespace {
+
+[[noreturn]] void refuse(const KeyInfo& key, const ConfigNode& node, const std::string& what, std::string hint = {}) {
+  if (hint.empty()) hint = key.hint;
+  throw ConfigError({node.where, key.path() + ' ' + what, node.kind_name(), accepted(key), hint});
+}
+
+const std::string& scalar(const KeyInfo& key, const ConfigNode& node) {
+  if (node.kind == ConfigNode::Kind::null) refuse(key, node, "has no value");
+  if (node.kind != ConfigNode::Kind::scalar) refuse(key, node, "must be a single value");
+  return node.text;
+}
+
+// Scalars in quotes are texts.
+const std::string& plain(const KeyInfo& key, const ConfigNode& node) {
+  const std::string& text = scalar(key, node);
+  if (node.quoted) refuse(key, node, "must not be in quotes");
+  return text;
+}
+
+void check_range(const KeyInfo& key, const ConfigNode& node, double value) {
+  if (std::isinf(value) && !key.infinite_allowed) refuse(key, node, "must be finite");
+  if (value < key.minimum || (key.above_minimum && value == key.minimum)) refuse(key, node, "is too small");
+  if (value > key.maximum) refuse(key, node, "is too large");
+}
+
+double number(const KeyInfo& key, const ConfigNode& node) {
+  const auto value = parse_number(plain(key, node));
+  if (!value) refuse(key, node, "is not a number");
+  check_range(key, node, *value);
+  return *value;
+}
+
+std::int64_t integer(const KeyInfo& key, const ConfigNode& node) {
+  const auto value = parse_integer(plain(key, node));
+  if (!value) refuse(key, node, "is not a whole number");
+  check_range(key, node, static_cast<double>(*value));
+  return *value;
+}
+
+bool boolean(const KeyInfo& key, const ConfigNode& node) {
+  const std::string& text = plain(key, node);
+  if (text != "true" && text != "false") refuse(key, node, "must be true or false");
+  return text == "true";
+}
+
+std::string text_value(const KeyInfo& key, const ConfigNode& node) {
+  const std::string& text = scalar(key, node);
+  if (text.empty()) refuse(key, node, "is empty");
+  if (!key.choices.empty() && std::find(key.choices.begin(), key.choices.end(), text) == key.choices.end())
+    throw ConfigError({node.where, "unknown name in " + key.path(), in_quotes(text), join_choices(key.choices),
+                       did_you_mean(text, key.choices)});
+  return text;
+}
+
+void check_count(const KeyInfo& key, const ConfigNode& node, std::size_t count) {
+  if (count < key.fewest || count > key.most)
+    throw ConfigError({node.where, key.path() + (count == 0 ? " is an empty list" : " has the wrong number of items"),
+                       count == 0 ? "" : std::to_string(count), accepted(key), key.hint});
+}
+
+template <class T>
+std::vector<T> list(const KeyInfo& key, const ConfigNode& node, T (*item)(const KeyInfo&, const ConfigNode&)) {
+  if (node.kind != ConfigNode::Kind::sequence) refuse(key, node, "must be a list");
+  check_count(key, node, node.items.size());
+  std::vector<T> result;
+  for (const ConfigNode& n : node.items) result.push_back(item(key, n));
+  return result;
+}
+
+std::vector<std::string> texts(const KeyInfo& key, const ConfigNode& node) {
+  std::vector<std::string> result;
+  if (node.kind == ConfigNode::Kind::scalar) {
+    result.push_back(text_value(key, node));
+    check_count(key, node, 1);
+  } else {
+    result = list<std::string>(key, node, &text_value);
+  }
+  std::unordered_set<std::string> seen;
+  for (std::size_t i = 0; i < result.size(); ++i)
+    if (!seen.insert(result[i]).second)
+      throw ConfigError({node.items[i].where, key.path() + " names " + in_quotes(result[i]) + " twice", {}, {}, {}});
+  return result;
+}
+
+std::string frame_range(const KeyInfo& key, const ConfigNode& node) {
+  const std::string& text = scalar(key, node);
+  const auto range = parse_frame_range(text);
+  if (!range) refuse(key, node, "is not a range of frames");
+  const bool same_side = range->start && range->stop && (*range->start < 0) == (*range->stop < 0);
+  if ((same_side && *range->start >= *range->stop) || range->stop == 0) refuse(key, node, "selects no frame");
+  return text;
+}
+
+ConfigValue window(const KeyInfo& key, const ConfigNode& node) {
+  if (scalar(key, node) == "all") return std::string("all");
+  if (!parse_integer(node.text)) refuse(key, node, "is not a number of frames", did_you_mean(node.text, {"all"}));
+  return integer(key, node);
+}
+
+}  // namespace
+
+ConfigValue convert(const KeyInfo& key, const ConfigNode& node) {
+  switch (key.type) {
+    case ValueType::boolean:
+      return boolean(key, node);
+    case ValueType::integer:
+      return integer(key, node);
+    case ValueType::number:
+      return number(key, node);
+    case ValueType::text:
+      return text_value(key, node);
+    case ValueType::texts:
+      return texts(key, node);
+    case ValueType::integers:
+      return list<std::int64_t>(key, node, &integer);
+    case ValueType::numbers:
+      return list<double>(key, node, &number);
+    case ValueType::frame_range:
+      return frame_range(key, node);
+    case ValueType::window:
+      break;
+  }
+  return window(key, node);
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+
+#include "grainvdb/plan.hpp"
+#include "grainvdb/units.hpp"
+
+namespace grainvdb {
+namespace {
+
+constexpr ColumnSet all_columns() {
+  return Column::velocity | Column::angular_velocity | Column::radius | Column::mass | ColumnSet(Column::type) |
+         Column::contacts;
+}
+
+std::string joined(const std::vector<std::string>& names, const char* none) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? none : text;
+}
+
+std::string counted(std::size_t n, const std::string& noun) {
+  return std::to_string(n) + ' ' + noun + (n == 1 ? "" : "s");
+}
+
+const char* kind_name(Moment::Kind kind) {
+  switch (kind) {
+    case Moment::Kind::particles:
+      return "splat of particles";
+    case Moment::Kind::particle_gradients:
+      return "splat of particles with the kernel's gradient";
+    case Moment::Kind::contacts:
+      return "splat of contacts";
+    case Moment::Kind::voxels:
+      break;
+  }
+  return "computed from the above, voxel by voxel";
+}
+
+// Before a dump has been opened the unit system may be unknown; units are then powers of mass, length and time.
+std::string unit_symbol(const Pipeline& pipeline, const Dimension& dimension) {
+  static const UnitSystem any{"", "mass", "length", "time"};
+  const UnitSystem* system = pipeline.input.units ? find_unit_system(*pipeline.input.units) : nullptr;
+  return (system != nullptr ? *system : any).symbol(dimension);
+}
+
+std::vector<std::string> names_of(const std::vector<MomentPtr>& moments) {
+  std::vector<std::string> names;
+  for (const MomentPtr& moment : moments) names.push_back(moment->name);
+  return names;
+}
+
+bool is_written(const Pipeline& pipeline, const Stage& stage) {
+  return std::find(pipeline.fields.begin(), pipeline.fields.end(), stage.name) != pipeline.fields.end();
+}
+
+std::string describe_sweep(const Sweep& sweep) {
+  std::string text = "  reads " + joined(column_names(sweep.columns), "nothing") + '\n';
+  for (std::size_t p = 0; p < sweep.passes.size(); ++p) {
+    text += "  pass " + std::to_string(p + 1) + " over each frame\n";
+    for (const MomentPtr& moment : sweep.passes[p]) {
+      text += "    " + moment->name + ": " + counted(static_cast<std::size_t>(moment->channels), "channel") + ", " +
+              kind_name(moment->kind);
+      if (!moment->frame_needs.empty()) text += "; from " + joined(names_of(moment->frame_needs), "") + " of the frame";
+      if (!moment->mean_needs.empty()) text += "; from the time mean of " + joined(names_of(moment->mean_needs), "");
+      text += '\n';
+    }
+  }
+  return text;
+}
+
+std::vector<std::string> columns_not_read(const Plan& plan) {
+  std::set<std::string> read;
+  for (const Sweep& sweep : plan.sweeps)
+    for (const std::string& name : column_names(sweep.columns)) read.insert(name);
+  std::vector<std::string> rest;
+  for (const std::string& name : column_names(all_columns()))
+    if (!read.contains(name)) rest.push_back(name);
+  return rest;
+}
+
+std::string frame_text(const Pipeline& pipeline) {
+  const FrameRange& r = pipeline.frames;
+  if (!r.start && !r.stop && r.step == 1) return "all";
+  return (r.start ? std::to_string(*r.start) : "") + ':' + (r.stop ? std::to_string(*r.stop) : "") + ':' +
+         std::to_string(r.step);
+}
+
+}  // namespace
+
+std::string describe(const Plan& plan, const Pipeline& pipeline) {
+  std::string text = "pipeline " + pipeline.file + '\n';
+  text += "frames: " + frame_text(pipeline) + "; averaged over " +
+          (pipeline.window == 0 ? "all of them" : "windows of " + counted(pipeline.window, "frame")) + "\n\n";
+  for (std::size_t s = 0; s < plan.sweeps.size(); ++s) {
+    text += "sweep " + std::to_string(s + 1) + " of " + std::to_string(plan.sweeps.size()) + '\n';
+    text += describe_sweep(plan.sweeps[s]);
+  }
+
+  text += "\nstages, in order\n";
+  int components = 0;
+  for (const Stage* stage : plan.stages) {
+    components += stage->components;
+    text += "  " + stage->name + " [" + unit_symbol(pipeline, stage->dimension) + "] = " + stage->equation +
+            (is_written(pipeline, *stage) ? "" : " (not written)") + '\n';
+  }
+
+  int channels = 0;
+  for (const MomentPtr& moment : plan.means) channels += moment->channels;
+  const int bytes = 8 * channels + 4 * components;
+  text += "\ntime means kept: " + joined(names_of(plan.means), "none") + '\n';
+  text += "memory per active voxel: " + std::to_string(bytes) + " bytes (" + std::to_string(channels) +
+          " mean channels of 8, " + std::to_string(components) + " field components of 4)\n";
+  text += "written: " + joined(pipeline.fields, "nothing") + " as " + joined(pipeline.formats, "nothing") + '\n';
+  text += "not read: " + joined(columns_not_read(plan), "nothing is left out") + '\n';
+  text += "not needed: " + joined(plan.not_needed, "no stage is left out") + '\n';
+  return text;
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,87 @@
+#include <nlohmann/json.hpp>
+
+#include "grainvdb/pipeline.hpp"
+#include "pipeline/schema.hpp"
+
+namespace grainvdb {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number_schema(const KeyInfo& key, const char* type) {
+  Json json{{"type", type}};
+  if (std::isfinite(key.minimum)) json[key.above_minimum ? "exclusiveMinimum" : "minimum"] = key.minimum;
+  if (std::isfinite(key.maximum)) json["maximum"] = key.maximum;
+  return json;
+}
+
+Json text_schema(const KeyInfo& key) {
+  Json json{{"type", "string"}, {"minLength", 1}};
+  if (!key.choices.empty()) json["enum"] = key.choices;
+  return json;
+}
+
+Json list_schema(const KeyInfo& key, const Json& items) {
+  Json json{{"type", "array"}, {"items", items}, {"minItems", key.fewest}};
+  if (key.most < std::numeric_limits<std::size_t>::max()) json["maxItems"] = key.most;
+  return json;
+}
+
+Json value_schema(const KeyInfo& key) {
+  switch (key.type) {
+    case ValueType::boolean:
+      return {{"type", "boolean"}};
+    case ValueType::integer:
+      return number_schema(key, "integer");
+    case ValueType::number:
+      return number_schema(key, "number");
+    case ValueType::text:
+      return text_schema(key);
+    case ValueType::integers:
+      return list_schema(key, number_schema(key, "integer"));
+    case ValueType::numbers:
+      return list_schema(key, number_schema(key, "number"));
+    case ValueType::texts: {
+      Json list = list_schema(key, text_schema(key));
+      list["uniqueItems"] = true;
+      return key.fewest > 1 ? list : Json{{"anyOf", {list, text_schema(key)}}};
+    }
+    case ValueType::frame_range:
+      return {{"anyOf",
+               {{{"type", "string"}, {"pattern", "^([-+]?[0-9]+|[-+]?[0-9]*:[-+]?[0-9]*(:[0-9]*)?)$"}},
+                {{"type", "integer"}}}}};
+    case ValueType::window:
+      break;
+  }
+  return {{"anyOf", {{{"const", "all"}}, number_schema(key, "integer")}}};
+}
+
+Json section_schema(const Schema& schema, const std::string& path, const std::string& help) {
+  Json properties = Json::object(), required = Json::array();
+  for (const KeyInfo& key : schema.keys) {
+    if (key.section != path) continue;
+    Json json = value_schema(key);
+    json["description"] = key.help + (key.unit.empty() ? "" : " [" + key.unit + ']');
+    if (key.default_value) json["default"] = std::visit([](const auto& v) { return Json(v); }, *key.default_value);
+    properties[key.name] = json;
+    if (key.required) required.push_back(key.name);
+  }
+  for (const SectionInfo& child : schema.sections) {
+    if (child.parent() != path) continue;
+    properties[child.name()] = section_schema(schema, child.path, child.help);
+    if (child.required) required.push_back(child.name());
+  }
+  Json json{{"type", "object"}, {"description", help}, {"properties", properties}, {"additionalProperties", false}};
+  if (!required.empty()) json["required"] = required;
+  return json;
+}
+
+}  // namespace
+
+std::string pipeline_schema(const StageRegistry& registry) {
+  Json json{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "grainvdb pipeline file"}};
+  json.update(section_schema(make_schema(registry), "", "What to read, on which lattice, and which fields to write."));
+  return json.dump(2) + '\n';
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,182 @@
+#include "grainvdb/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <stdexcept>
+
+#include "pipeline/number.hpp"
+#include "pipeline/text.hpp"
+
+namespace grainvdb {
+namespace {
+
+// The wanted stages and all that they need, each after its needs; among those that could come next, the one registered
+// first.
+class StageOrder {
+ public:
+  StageOrder(const Pipeline& pipeline, const StageRegistry& registry) : pipeline_(pipeline), registry_(registry) {
+    for (const std::string& field : pipeline.fields) visit(field, "output.fields");
+  }
+
+  std::vector<const Stage*> ordered() const {
+    std::vector<const Stage*> result;
+    std::set<std::string> done;
+    while (result.size() < needs_.size())
+      for (const Stage& stage : registry_.stages()) {  // the first that is ready, then again from the top
+        const auto it = needs_.find(stage.name);
+        if (it == needs_.end() || done.contains(stage.name)) continue;
+        const auto& fields = it->second.fields;
+        if (!std::all_of(fields.begin(), fields.end(), [&](const auto& f) { return done.contains(f); })) continue;
+        result.push_back(&stage);
+        done.insert(stage.name);
+        break;
+      }
+    return result;
+  }
+
+  const StageNeeds& needs(const std::string& stage) const { return needs_.at(stage); }
+
+ private:
+  void visit(const std::string& field, const std::string& asker) {
+    if (const auto it = std::find(path_.begin(), path_.end(), field); it != path_.end()) {
+      std::string cycle;
+      for (auto step = it; step != path_.end(); ++step) cycle += *step + " -> ";
+      throw ConfigError(
+          {pipeline_.location("output.fields"), "the stages need one another in a circle", cycle + field, {}, {}});
+    }
+    if (needs_.contains(field)) return;
+    const Stage* stage = registry_.find(field);
+    if (stage == nullptr) {
+      std::vector<std::string> names;
+      for (const Stage& s : registry_.stages()) names.push_back(s.name);
+      throw ConfigError({pipeline_.location("output.fields"),
+                         "no stage makes the field " + in_quotes(field) + ", which " + asker + " asks for",
+                         {},
+                         join_choices(names),
+                         did_you_mean(field, names)});
+    }
+    const StageNeeds needs = stage->needs ? stage->needs(pipeline_.stages) : StageNeeds{};
+    path_.push_back(field);
+    for (const std::string& need : needs.fields) visit(need, "stage " + in_quotes(field));
+    path_.pop_back();
+    needs_.emplace(field, needs);
+  }
+
+  const Pipeline& pipeline_;
+  const StageRegistry& registry_;
+  std::vector<std::string> path_;
+  std::map<std::string, StageNeeds> needs_;
+};
+
+// Moments by name, each with the sweep and the pass in which it can be computed first.
+class MomentOrder {
+ public:
+  struct Entry {
+    MomentPtr moment;
+    std::size_t sweep = 0;
+    std::size_t pass = 0;
+  };
+
+  void add(const MomentPtr& moment) {
+    if (const auto it = index_.find(moment->name); it != index_.end()) {
+      const Moment& known = *entries_[it->second].moment;
+      if (known.kind != moment->kind || known.channels != moment->channels)
+        throw std::logic_error("two different moments are named '" + moment->name + "'");
+      return;
+    }
+    Entry entry{moment};
+    for (const MomentPtr& need : moment->frame_needs) {
+      add(need);
+      const Entry& n = of(*need);
+      entry.sweep = std::max(entry.sweep, n.sweep);
+      // Voxel moments follow their needs within a pass; others need the complete sums.
+      entry.pass = std::max(entry.pass, moment->kind == Moment::Kind::voxels ? n.pass : n.pass + 1);
+    }
+    for (const MomentPtr& need : moment->mean_needs) {
+      add(need);
+      entry.sweep = std::max(entry.sweep, of(*need).sweep + 1);
+    }
+    index_.emplace(moment->name, entries_.size());
+    entries_.push_back(entry);
+  }
+
+  /// Needs come before what needs them.
+  const std::vector<Entry>& entries() const { return entries_; }
+  const Entry& of(const Moment& moment) const { return entries_[index_.at(moment.name)]; }
+
+ private:
+  std::vector<Entry> entries_;
+  std::map<std::string, std::size_t> index_;
+};
+
+void require_in_frame(const MomentOrder& order, const Moment& moment, std::set<std::string>& wanted) {
+  if (!wanted.insert(moment.name).second) return;
+  for (const MomentPtr& need : order.of(moment).moment->frame_needs) require_in_frame(order, *need, wanted);
+}
+
+Sweep make_sweep(const MomentOrder& order, std::size_t number) {
+  std::set<std::string> wanted;
+  for (const auto& entry : order.entries())
+    if (entry.sweep == number) require_in_frame(order, *entry.moment, wanted);
+  Sweep sweep;
+  for (const auto& entry : order.entries()) {
+    if (!wanted.contains(entry.moment->name)) continue;
+    if (sweep.passes.size() <= entry.pass) sweep.passes.resize(entry.pass + 1);
+    sweep.passes[entry.pass].push_back(entry.moment);
+    sweep.columns |= entry.moment->columns;
+  }
+  return sweep;
+}
+
+// Sampling at a particle reads the eight voxels around it, the farthest of them up to √3 h away; all must be within
+// its kernel.
+void check_cutoff(const Pipeline& pipeline, const Stage& stage, const Moment& moment) {
+  const bool samples =
+      moment.kind != Moment::Kind::voxels && !(moment.frame_needs.empty() && moment.mean_needs.empty());
+  const double least = std::numbers::sqrt3 * pipeline.voxel;
+  if (samples && pipeline.cutoff < least)
+    throw ConfigError(
+        {pipeline.location("kernel.cutoff"),
+         "the kernel is too narrow for " + in_quotes(stage.name) + ", which interpolates to the particles",
+         "kernel.cutoff " + print_number(pipeline.cutoff) + " at lattice.voxel " + print_number(pipeline.voxel),
+         "a cutoff of at least sqrt(3) voxels, " + print_number(least), "Use smaller voxels or a wider kernel."});
+  for (const auto* needs : {&moment.frame_needs, &moment.mean_needs})
+    for (const MomentPtr& need : *needs) check_cutoff(pipeline, stage, *need);
+}
+
+}  // namespace
+
+Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
+  const StageOrder stages(pipeline, registry);
+  Plan plan;
+  plan.stages = stages.ordered();
+
+  MomentOrder moments;
+  std::set<std::string> kept;
+  for (const Stage* stage : plan.stages)
+    for (const MomentPtr& moment : stages.needs(stage->name).moments) {
+      check_cutoff(pipeline, *stage, *moment);
+      moments.add(moment);
+      kept.insert(moment->name);
+    }
+  std::size_t sweeps = 1;
+  for (const auto& entry : moments.entries()) {
+    sweeps = std::max(sweeps, entry.sweep + 1);
+    for (const MomentPtr& need : entry.moment->mean_needs) kept.insert(need->name);
+  }
+  for (std::size_t s = 0; s < sweeps; ++s) plan.sweeps.push_back(make_sweep(moments, s));
+  // The selection by type is made in every sweep.
+  for (Sweep& sweep : plan.sweeps)
+    if (!pipeline.select.types.empty()) sweep.columns |= Column::type;
+  for (const auto& entry : moments.entries())
+    if (kept.contains(entry.moment->name)) plan.means.push_back(entry.moment);
+  for (const Stage& stage : registry.stages())
+    if (std::find(plan.stages.begin(), plan.stages.end(), &stage) == plan.stages.end())
+      plan.not_needed.push_back(stage.name);
+  return plan;
+}
+
+}  // namespace grainvdb

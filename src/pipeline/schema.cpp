@@ -1,0 +1,379 @@
+#include "pipeline/schema.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <locale>
+#include <sstream>
+#include <utility>
+
+#include "grainvdb/field_sink.hpp"
+#include "grainvdb/units.hpp"
+#include "pipeline/frame_range.hpp"
+#include "pipeline/text.hpp"
+
+namespace grainvdb {
+namespace {
+
+constexpr const char* no_unit_hint = "Numbers are given without their unit, in the unit system of the dump.";
+
+// The folder of the pipeline file as the beginning of a pattern: its own name has no wildcards.
+std::string without_wildcards(const std::string& folder) {
+  std::string escaped;
+  for (char c : folder) {
+    if (c == '*' || c == '?' || c == '[' || c == '\\') escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+// Paths and patterns are relative to the folder of the pipeline file.
+std::vector<std::string> input_paths(const Pipeline& pipeline, const ConfigValue& value) {
+  const std::filesystem::path folder = std::filesystem::path(pipeline.file).parent_path();
+  const std::filesystem::path folder_of_pattern = without_wildcards(folder.string());
+  std::vector<std::string> result;
+  for (const std::string& path : std::get<std::vector<std::string>>(value)) {
+    const bool is_pattern = path.find_first_of("*?[") != std::string::npos;
+    result.push_back(((is_pattern ? folder_of_pattern : folder) / path).string());
+  }
+  return result;
+}
+
+Vec3 vector_of(const ConfigValue& value) {
+  const auto& v = std::get<std::vector<double>>(value);
+  return {v.at(0), v.at(1), v.at(2)};
+}
+
+std::pair<Vec3, Vec3>& region_of(Pipeline& pipeline) {
+  auto& region = pipeline.select.region;
+  if (!region) region.emplace();
+  return *region;
+}
+
+KeyInfo number_key(std::string section, std::string name, std::string unit, std::string help,
+                   std::function<void(Pipeline&, const ConfigValue&)> apply) {
+  KeyInfo key{std::move(section), std::move(name), ValueType::number, std::move(help), std::move(unit)};
+  key.minimum = 0;
+  key.above_minimum = true;
+  key.hint = no_unit_hint;
+  key.apply = std::move(apply);
+  return key;
+}
+
+KeyInfo texts_key(std::string section, std::string name, std::string help, std::vector<std::string> choices,
+                  std::function<void(Pipeline&, const ConfigValue&)> apply) {
+  KeyInfo key{std::move(section), std::move(name), ValueType::texts, std::move(help)};
+  key.choices = std::move(choices);
+  key.apply = std::move(apply);
+  return key;
+}
+
+KeyInfo vector_key(std::string section, std::string name, std::string help,
+                   std::function<void(Pipeline&, const ConfigValue&)> apply) {
+  KeyInfo key{std::move(section), std::move(name), ValueType::numbers, std::move(help), "length"};
+  key.fewest = key.most = 3;
+  key.hint = no_unit_hint;
+  key.apply = std::move(apply);
+  return key;
+}
+
+void add_input(Schema& schema) {
+  schema.sections.push_back({"input", "What to read.", true});
+  auto key = texts_key("input", "particles",
+                       "Particle dumps: a file, directory or pattern, or a list of them; relative to the folder of the "
+                       "pipeline file.",
+                       {}, [](Pipeline& p, const ConfigValue& v) { p.input.particles = input_paths(p, v); });
+  key.required = true;
+  schema.keys.push_back(key);
+  schema.keys.push_back(number_key("input", "dt", "time", "Time per step, for dumps without ITEM: TIME.",
+                                   [](Pipeline& p, const ConfigValue& v) { p.input.dt = std::get<double>(v); }));
+  KeyInfo units{"input", "units", ValueType::text, "Unit system, for dumps without ITEM: UNITS."};
+  for (const UnitSystem& system : unit_systems()) units.choices.push_back(system.name);
+  units.apply = [](Pipeline& p, const ConfigValue& v) { p.input.units = std::get<std::string>(v); };
+  schema.keys.push_back(units);
+  schema.keys.push_back(number_key("input", "density", "mass/length^3",
+                                   "Density of the grains, for dumps without mass.",
+                                   [](Pipeline& p, const ConfigValue& v) { p.input.density = std::get<double>(v); }));
+  schema.keys.push_back(number_key("input", "radius", "length",
+                                   "Radius of all grains, for dumps without radius and diameter.",
+                                   [](Pipeline& p, const ConfigValue& v) { p.input.radius = std::get<double>(v); }));
+}
+
+void add_contacts(Schema& schema) {
+  schema.sections.push_back({"input.contacts",
+                             "Contact dumps, for the contact stress. Give compute or columns, or neither for columns "
+                             "named id1 id2 fx fy fz."});
+  auto files = texts_key("input.contacts", "files", "Contact dumps, as input.particles.", {},
+                         [](Pipeline& p, const ConfigValue& v) { p.input.contacts.files = input_paths(p, v); });
+  files.required = true;
+  schema.keys.push_back(files);
+  schema.keys.push_back(texts_key(
+      "input.contacts", "compute", "Keywords of the LIGGGHTS compute pair/gran/local that made the dump, in any order.",
+      {"pos", "vel", "id", "force", "force_normal", "force_tangential", "torque", "torque_normal", "torque_tangential",
+       "history", "contactArea", "delta", "heatFlux", "contactPoint", "ms_id", "verbose"},
+      [](Pipeline& p, const ConfigValue& v) { p.input.contacts.compute = std::get<std::vector<std::string>>(v); }));
+
+  schema.sections.push_back({"input.contacts.columns", "Names of the columns, for dumps of other computes."});
+  const auto column = [&](const char* name, std::size_t count, bool required, const char* help) {
+    auto key = texts_key("input.contacts.columns", name, help, {}, [name](Pipeline& p, const ConfigValue& v) {
+      p.input.contacts.columns[name] = std::get<std::vector<std::string>>(v);
+    });
+    key.fewest = key.most = count;
+    key.required = required;
+    schema.keys.push_back(key);
+  };
+  column("id1", 1, true, "Id of the first particle, on which the force acts.");
+  column("id2", 1, true, "Id of the second particle.");
+  column("force", 3, false, "Total contact force on id1.");
+  column("normal_force", 3, false, "Normal part of the force on id1; with tangential_force in place of force.");
+  column("tangential_force", 3, false, "Tangential part of the force on id1.");
+  column("point", 3, false, "Contact point; without it, the radius-weighted point between the centres.");
+}
+
+void add_selection(Schema& schema) {
+  schema.sections.push_back({"select", "What counts as material: particles that satisfy every criterion given."});
+  KeyInfo types{"select", "types", ValueType::integers, "Particle types."};
+  types.minimum = 0;
+  types.maximum = std::numeric_limits<int>::max();
+  types.apply = [](Pipeline& p, const ConfigValue& v) {
+    for (const std::int64_t type : std::get<std::vector<std::int64_t>>(v))
+      p.select.types.push_back(static_cast<int>(type));
+  };
+  schema.keys.push_back(types);
+  KeyInfo ids{"select", "ids", ValueType::integers, "First and last id, both included."};
+  ids.fewest = ids.most = 2;
+  ids.apply = [](Pipeline& p, const ConfigValue& v) {
+    const auto& range = std::get<std::vector<std::int64_t>>(v);
+    p.select.ids.emplace(range.at(0), range.at(1));
+  };
+  schema.keys.push_back(ids);
+  schema.sections.push_back({"select.region", "A box: lo <= x < hi along each axis; .inf leaves a side open."});
+  auto lo = vector_key("select.region", "lo", "Lower corner.",
+                       [](Pipeline& p, const ConfigValue& v) { region_of(p).first = vector_of(v); });
+  auto hi = vector_key("select.region", "hi", "Upper corner.",
+                       [](Pipeline& p, const ConfigValue& v) { region_of(p).second = vector_of(v); });
+  for (KeyInfo* corner : {&lo, &hi}) {
+    corner->required = true;
+    corner->infinite_allowed = true;
+    schema.keys.push_back(*corner);
+  }
+}
+
+void add_method(Schema& schema) {
+  KeyInfo frames{"", "frames", ValueType::frame_range,
+                 "Frames first:end:step of the sorted list, as Python slices: the end is left out, negative numbers "
+                 "count from the end, one number is one frame."};
+  frames.default_value = std::string("::");
+  frames.apply = [](Pipeline& p, const ConfigValue& v) {
+    p.frames = parse_frame_range(std::get<std::string>(v)).value();
+  };
+  schema.keys.push_back(frames);
+
+  schema.sections.push_back({"lattice", "The voxels on which the fields live.", true});
+  auto voxel =
+      number_key("lattice", "voxel", "length", "Edge of a voxel. Periodic lengths must be whole numbers of it.",
+                 [](Pipeline& p, const ConfigValue& v) { p.voxel = std::get<double>(v); });
+  voxel.required = true;
+  schema.keys.push_back(voxel);
+  auto origin = vector_key("lattice", "origin", "Corner of voxel (0,0,0); lattices with one origin and voxel agree.",
+                           [](Pipeline& p, const ConfigValue& v) { p.origin = vector_of(v); });
+  origin.default_value = std::vector<double>{0, 0, 0};
+  schema.keys.push_back(origin);
+
+  schema.sections.push_back({"kernel", "The smoothing kernel.", true});
+  KeyInfo kernel{"kernel", "name", ValueType::text, "Shape of the kernel."};
+  kernel.choices = {"lucy"};
+  kernel.default_value = std::string("lucy");
+  kernel.apply = [](Pipeline&, const ConfigValue&) {};  // there is one kernel
+  schema.keys.push_back(kernel);
+  auto cutoff =
+      number_key("kernel", "cutoff", "length", "Radius of the kernel's support; 3 mean diameters give a width of 1.5.",
+                 [](Pipeline& p, const ConfigValue& v) { p.cutoff = std::get<double>(v); });
+  cutoff.required = true;
+  schema.keys.push_back(cutoff);
+
+  schema.sections.push_back({"average", "Averages over time."});
+  KeyInfo window{"average", "window", ValueType::window, "Frames per output time; 'all' makes one mean of all frames."};
+  window.default_value = std::string("all");
+  window.minimum = 1;
+  window.apply = [](Pipeline& p, const ConfigValue& v) {
+    p.window = std::holds_alternative<std::int64_t>(v) ? static_cast<std::size_t>(std::get<std::int64_t>(v)) : 0;
+  };
+  schema.keys.push_back(window);
+}
+
+void add_output(Schema& schema, const StageRegistry& registry) {
+  schema.sections.push_back({"output", "What to write.", true});
+  std::vector<std::string> names;
+  for (const Stage& stage : registry.stages()) names.push_back(stage.name);
+  auto fields = texts_key("output", "fields", "Fields, in the order in which they are written.", names,
+                          [](Pipeline& p, const ConfigValue& v) { p.fields = std::get<std::vector<std::string>>(v); });
+  fields.required = true;
+  schema.keys.push_back(fields);
+  std::vector<std::string> formats;
+  for (const SinkInfo& sink : sink_registry()) formats.push_back(sink.name);
+  auto format = texts_key("output", "formats", "File formats.", formats,
+                          [](Pipeline& p, const ConfigValue& v) { p.formats = std::get<std::vector<std::string>>(v); });
+  format.default_value = std::vector<std::string>{"hdf5"};
+  schema.keys.push_back(format);
+}
+
+ValueType type_of(const OptionValue& value) {
+  static constexpr ValueType types[] = {ValueType::boolean, ValueType::integer, ValueType::number, ValueType::text,
+                                        ValueType::texts};
+  return types[value.index()];
+}
+
+KeyInfo option_key(const std::string& stage, const OptionInfo& option) {
+  KeyInfo key{"stages." + stage, option.name, type_of(option.default_value), option.help};
+  key.default_value = std::visit([](const auto& v) { return ConfigValue(v); }, option.default_value);
+  key.choices = option.choices;
+  key.minimum = option.minimum;
+  key.maximum = option.maximum;
+  key.fewest = 0;
+  key.apply = [stage, name = option.name, type = option.default_value.index()](Pipeline& p, const ConfigValue& v) {
+    OptionValue& to = p.stages[stage][name];
+    switch (type) {
+      case 0:
+        to = std::get<bool>(v);
+        break;
+      case 1:
+        to = std::get<std::int64_t>(v);
+        break;
+      case 2:
+        to = std::get<double>(v);
+        break;
+      case 3:
+        to = std::get<std::string>(v);
+        break;
+      default:
+        to = std::get<std::vector<std::string>>(v);
+    }
+  };
+  return key;
+}
+
+void add_stages(Schema& schema, const StageRegistry& registry) {
+  schema.sections.push_back({"stages", "Options of stages."});
+  for (const Stage& stage : registry.stages()) {
+    schema.sections.push_back({"stages." + stage.name, "Options of " + stage.name + ": " + stage.description});
+    for (const OptionInfo& option : stage.options) schema.keys.push_back(option_key(stage.name, option));
+  }
+}
+
+void add_limits(Schema& schema) {
+  schema.sections.push_back({"limits", "Bounds that are checked before the work they bound begins."});
+  const Limits defaults;
+  KeyInfo extent{"limits", "extent", ValueType::integer, "Voxels along any axis."};
+  extent.default_value = defaults.extent;
+  extent.minimum = 1;
+  extent.maximum = 1e9;  // voxel indices are 32-bit
+  extent.apply = [](Pipeline& p, const ConfigValue& v) { p.limits.extent = std::get<std::int64_t>(v); };
+  schema.keys.push_back(extent);
+  KeyInfo dense{"limits", "dense_voxels", ValueType::integer, "Voxels of the box that is written."};
+  dense.default_value = defaults.dense_voxels;
+  dense.minimum = 1;
+  dense.apply = [](Pipeline& p, const ConfigValue& v) { p.limits.dense_voxels = std::get<std::int64_t>(v); };
+  schema.keys.push_back(dense);
+  KeyInfo memory{"limits", "memory_gb", ValueType::number,
+                 "Memory of the moment sums; 0 means three quarters of the machine's.", "GB"};
+  memory.default_value = defaults.memory_gb;
+  memory.minimum = 0;
+  memory.apply = [](Pipeline& p, const ConfigValue& v) { p.limits.memory_gb = std::get<double>(v); };
+  schema.keys.push_back(memory);
+}
+
+std::string range_of(const KeyInfo& key) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(10);
+  const bool low = std::isfinite(key.minimum), high = std::isfinite(key.maximum);
+  if (low && high && key.minimum == key.maximum) {
+    text << " equal to " << key.minimum;
+  } else {
+    if (low) text << (key.above_minimum ? " > " : " >= ") << key.minimum;
+    if (high) text << (low ? " and <= " : " <= ") << key.maximum;
+  }
+  if (!key.unit.empty()) text << " [" << key.unit << ']';
+  return text.str();
+}
+
+std::string list_of(const KeyInfo& key, const std::string& items) {
+  if (key.fewest == key.most) return "a list of " + std::to_string(key.fewest) + ' ' + items;
+  return "a list of " + items;
+}
+
+}  // namespace
+
+std::string SectionInfo::parent() const {
+  const auto dot = path.rfind('.');
+  return dot == std::string::npos ? std::string() : path.substr(0, dot);
+}
+
+std::string SectionInfo::name() const {
+  return path.substr(path.rfind('.') + 1);
+}
+
+const KeyInfo* Schema::find_key(const std::string& section, const std::string& name) const {
+  const auto it =
+      std::find_if(keys.begin(), keys.end(), [&](const KeyInfo& k) { return k.section == section && k.name == name; });
+  return it == keys.end() ? nullptr : &*it;
+}
+
+const SectionInfo* Schema::find_section(const std::string& path) const {
+  const auto it = std::find_if(sections.begin(), sections.end(), [&](const SectionInfo& s) { return s.path == path; });
+  return it == sections.end() ? nullptr : &*it;
+}
+
+std::vector<std::string> Schema::names_in(const std::string& section) const {
+  std::vector<std::string> names;
+  for (const KeyInfo& key : keys)
+    if (key.section == section) names.push_back(key.name);
+  for (const SectionInfo& s : sections)
+    if (s.parent() == section) names.push_back(s.name());
+  return names;
+}
+
+Schema make_schema(const StageRegistry& registry) {
+  Schema schema;
+  KeyInfo version{"", "grainvdb", ValueType::integer, "Version of the file format."};
+  version.required = true;
+  version.minimum = version.maximum = 1;
+  version.hint = "Other versions need another release of grainvdb.";
+  version.apply = [](Pipeline&, const ConfigValue&) {};
+  schema.keys.push_back(version);
+  add_input(schema);
+  add_contacts(schema);
+  add_selection(schema);
+  add_method(schema);
+  add_output(schema, registry);
+  add_stages(schema, registry);
+  add_limits(schema);
+  return schema;
+}
+
+std::string accepted(const KeyInfo& key) {
+  switch (key.type) {
+    case ValueType::boolean:
+      return "true or false";
+    case ValueType::integer:
+      return "a whole number" + range_of(key);
+    case ValueType::number:
+      return "a number" + range_of(key);
+    case ValueType::text:
+      return key.choices.empty() ? "a text" : join_choices(key.choices);
+    case ValueType::texts:
+      return key.choices.empty() ? list_of(key, "texts") : list_of(key, "names among " + join_choices(key.choices));
+    case ValueType::integers:
+      return list_of(key, "whole numbers" + range_of(key));
+    case ValueType::numbers:
+      return list_of(key, "numbers" + range_of(key));
+    case ValueType::frame_range:
+      return "a frame number or first:end:step, e.g. 0, 10:, -5:, ::2 or 10:50:2";
+    case ValueType::window:
+      break;
+  }
+  return "all, or a whole number" + range_of(key);
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,80 @@
+#pragma once
+/// The declaration of pipeline files: every section and key with type, unit, range, default and help. It alone feeds
+/// the validation, the resolved pipeline, the JSON schema and the help texts. The options of stages come from their
+/// registry.
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "grainvdb/pipeline.hpp"
+
+namespace grainvdb {
+
+enum class ValueType {
+  boolean,
+  integer,
+  number,
+  text,
+  texts,  ///< a list of texts; a single text stands for a list of one
+  integers,
+  numbers,
+  frame_range,  ///< "3", "a:b" or "a:b:c"; kept as text
+  window        ///< the text "all" or a number of frames
+};
+
+/// A value of a pipeline file; which alternative follows from the type of its key.
+using ConfigValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>,
+                                 std::vector<std::int64_t>, std::vector<double>>;
+
+struct KeyInfo {
+  std::string section;  ///< path of the section, e.g. "input.contacts"; empty at the top
+  std::string name;
+  ValueType type = ValueType::text;
+  std::string help;
+  std::string unit{};     ///< of numbers, in words, e.g. "length"
+  bool required = false;  ///< wherever its section is given
+  std::optional<ConfigValue> default_value{};
+  std::vector<std::string> choices{};  ///< of texts; empty: anything
+  double minimum = -std::numeric_limits<double>::infinity();
+  double maximum = std::numeric_limits<double>::infinity();
+  bool above_minimum = false;  ///< the minimum itself is not allowed
+  bool infinite_allowed = false;
+  std::size_t fewest = 1;  ///< items of a list
+  std::size_t most = std::numeric_limits<std::size_t>::max();
+  std::string hint{};  ///< added to errors about this key
+  std::function<void(Pipeline&, const ConfigValue&)> apply{};
+
+  std::string path() const { return section.empty() ? name : section + '.' + name; }
+};
+
+struct SectionInfo {
+  std::string path;
+  std::string help;
+  bool required = false;  ///< wherever the section around it is given
+
+  std::string parent() const;
+  std::string name() const;
+};
+
+struct Schema {
+  std::vector<SectionInfo> sections;  ///< a section comes after the one around it
+  std::vector<KeyInfo> keys;
+
+  /// nullptr when there is none.
+  const KeyInfo* find_key(const std::string& section, const std::string& name) const;
+  const SectionInfo* find_section(const std::string& path) const;
+  /// Names of the keys and sections directly in a section.
+  std::vector<std::string> names_in(const std::string& section) const;
+};
+
+Schema make_schema(const StageRegistry& registry);
+
+/// What a key accepts in words, e.g. "a number > 0 [length]".
+std::string accepted(const KeyInfo& key);
+
+}  // namespace grainvdb
