@@ -20,6 +20,7 @@ struct Coord {
 struct Period {
   std::int32_t first = 0;
   std::int32_t count = 0;
+  double length = 0;  ///< of the box in voxels, count to a relative 1e-6: what unwrapped coordinates repeat by
 };
 
 class Lattice {
@@ -28,7 +29,8 @@ class Lattice {
   Lattice(double voxel, const Vec3& origin);
 
   /// Makes the lattice periodic along the periodic axes of `box`. A periodic length must be a whole number of voxels
-  /// (relative error ≤ 1e-6); throws std::invalid_argument with the nearest fitting voxel sizes otherwise.
+  /// (relative error ≤ 1e-6); throws std::invalid_argument with the nearest fitting voxel sizes otherwise, and when
+  /// a voxel of the period would not have a 31-bit index.
   void set_periods(const Box& box);
 
   double voxel() const { return voxel_; }
@@ -40,6 +42,10 @@ class Lattice {
   /// Position of the centre of voxel i along an axis [length].
   double centre(int axis, std::int32_t i) const { return origin_[axis] + (i + 0.5) * voxel_; }
   Vec3 centre(const Coord& c) const { return {centre(0, c.x), centre(1, c.y), centre(2, c.z)}; }
+
+  /// The image of a position u in index space that lies in [first - ½, first - ½ + length) along an axis with a period;
+  /// u itself along any other.
+  double wrap_index(int axis, double u) const;
 
   /// The voxel of the stored period that i is an image of; i itself along an axis without period.
   std::int32_t wrap(int axis, std::int32_t i) const;

@@ -1,10 +1,125 @@
 #include "grainvdb/kernel.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
+#include <string>
 
 namespace grainvdb {
+namespace {
+
+struct Node {
+  double x;       // on [-1, 1]
+  double weight;  // the weights of a rule add up to 2
+};
+
+constexpr std::array<Node, 1> gauss_1{{{0, 2}}};
+constexpr std::array<Node, 2> gauss_2{{{-0.57735026918962576451, 1}, {0.57735026918962576451, 1}}};
+constexpr std::array<Node, 3> gauss_3{{{-0.77459666924148337704, 0.55555555555555555556},
+                                       {0, 0.88888888888888888889},
+                                       {0.77459666924148337704, 0.55555555555555555556}}};
+constexpr std::array<Node, 4> gauss_4{{{-0.86113631159405257522, 0.34785484513745385737},
+                                       {-0.33998104358485626480, 0.65214515486254614263},
+                                       {0.33998104358485626480, 0.65214515486254614263},
+                                       {0.86113631159405257522, 0.34785484513745385737}}};
+constexpr std::array<Node, 5> gauss_5{{{-0.90617984593866399280, 0.23692688505618908751},
+                                       {-0.53846931010568309104, 0.47862867049936646804},
+                                       {0, 0.56888888888888888889},
+                                       {0.53846931010568309104, 0.47862867049936646804},
+                                       {0.90617984593866399280, 0.23692688505618908751}}};
+constexpr std::array<Node, 6> gauss_6{{{-0.93246951420315202781, 0.17132449237917034504},
+                                       {-0.66120938646626451366, 0.36076157304813860757},
+                                       {-0.23861918608319690863, 0.46791393457269104739},
+                                       {0.23861918608319690863, 0.46791393457269104739},
+                                       {0.66120938646626451366, 0.36076157304813860757},
+                                       {0.93246951420315202781, 0.17132449237917034504}}};
+constexpr std::array<Node, 7> gauss_7{{{-0.94910791234275852453, 0.12948496616886969327},
+                                       {-0.74153118559939443986, 0.27970539148927666790},
+                                       {-0.40584515137739716691, 0.38183005050511894495},
+                                       {0, 0.41795918367346938776},
+                                       {0.40584515137739716691, 0.38183005050511894495},
+                                       {0.74153118559939443986, 0.27970539148927666790},
+                                       {0.94910791234275852453, 0.12948496616886969327}}};
+constexpr std::array<Node, 8> gauss_8{{{-0.96028985649753623168, 0.10122853629037625915},
+                                       {-0.79666647741362673959, 0.22238103445337447054},
+                                       {-0.52553240991632898582, 0.31370664587788728734},
+                                       {-0.18343464249564980494, 0.36268378337836198297},
+                                       {0.18343464249564980494, 0.36268378337836198297},
+                                       {0.52553240991632898582, 0.31370664587788728734},
+                                       {0.79666647741362673959, 0.22238103445337447054},
+                                       {0.96028985649753623168, 0.10122853629037625915}}};
+
+std::span<const Node> gauss_rule(int n) {
+  switch (n) {
+    case 1:
+      return gauss_1;
+    case 2:
+      return gauss_2;
+    case 3:
+      return gauss_3;
+    case 4:
+      return gauss_4;
+    case 5:
+      return gauss_5;
+    case 6:
+      return gauss_6;
+    case 7:
+      return gauss_7;
+    case 8:
+      return gauss_8;
+    default:
+      throw std::invalid_argument("a Gauss-Legendre rule of " + std::to_string(n) + " points is not offered");
+  }
+}
+
+double dot(const Vec3& a, const Vec3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+// W c³ / K at (r/c)² = q2, K = 105/(16 π).
+double shape(double q2) {
+  const double q = std::sqrt(q2);
+  if (!(q < 1)) return 0;
+  const double p = 1 - q;
+  return p * p * p * (1 + 3 * q);
+}
+
+// ∫₀ᵗ (1 - 6 r² + 8 r³ - 3 r⁴) dt, r² = b² + t², lengths in units of c: t - 6 I₂ + 8 I₃ - 3 I₄ of physics section 2.
+double antiderivative(double b2, double t) {
+  const double t2 = t * t;
+  const double b4 = b2 * b2;
+  const double r = std::sqrt(b2 + t2);
+  const double i2 = t * (b2 + t2 / 3);
+  // b⁴ asinh(t/b) → 0 as b → 0.
+  const double logarithm = b4 > 0 ? 3 * b4 / 8 * std::asinh(t / std::sqrt(b2)) : 0;
+  const double i3 = t * r * (2 * (b2 + t2) + 3 * b2) / 8 + logarithm;
+  const double i4 = t * (b4 + t2 * (2 * b2 / 3 + t2 / 5));
+  return t - 6 * i2 + 8 * i3 - 3 * i4;
+}
+
+// ∫ (1-r)³(1+3r) dt from t to t + length along a line at distance b from the centre, all of it inside the support;
+// lengths in units of c. The antiderivative loses digits by the ratio of |t| and b to the length of the interval: it is
+// used where the middle of the interval is nearer to the centre than twice the interval's length, so that no term is
+// more than a few times the length. Beyond that distance R the singularities of r³ at t = ±ib are so far from the
+// interval that the 8-point Gauss rule gives the mean to 1.1e-16 (R/c)³ (measured against 40-digit quadrature over all
+// directions; 8.7e-16 at 1.75, 3.3e-18 at 2.5 times the length); the other terms are polynomials that it integrates
+// exactly, and its terms are positive.
+double integral_inside(double b2, double t, double length) {
+  const double middle = t + 0.5 * length;
+  if (b2 + middle * middle < 4 * length * length)
+    return std::max(0.0, antiderivative(b2, t + length) - antiderivative(b2, t));
+  double sum = 0;
+  for (const Node& node : gauss_8) {
+    const double x = middle + 0.5 * length * node.x;
+    sum += node.weight * shape(b2 + x * x);
+  }
+  return 0.5 * length * sum;
+}
+
+}  // namespace
 
 LucyKernel::LucyKernel(double cutoff)
     : cutoff_(cutoff), inverse_cutoff_(1 / cutoff), norm_(105 / (16 * std::numbers::pi * cutoff * cutoff * cutoff)) {
@@ -17,6 +132,78 @@ double LucyKernel::value(double r2) const {
   if (!(q < 1)) return 0;
   const double p = 1 - q;
   return norm_ * p * p * p * (1 + 3 * q);
+}
+
+double LucyKernel::gradient_factor(double r2) const {
+  const double q = std::sqrt(r2) * inverse_cutoff_;
+  if (!(q < 1)) return 0;
+  const double p = 1 - q;
+  return -12 * norm_ * inverse_cutoff_ * inverse_cutoff_ * p * p;
+}
+
+double LucyKernel::line_integral(const Vec3& p, const Vec3& a) const {
+  Vec3 e{a[0] * inverse_cutoff_, a[1] * inverse_cutoff_, a[2] * inverse_cutoff_};
+  const Vec3 start{p[0] * inverse_cutoff_, p[1] * inverse_cutoff_, p[2] * inverse_cutoff_};
+  const double length = std::sqrt(dot(e, e));
+  // Over so short a branch W changes by less than 3.72/c⁴ · 1e-17 c < 2e-17 W(0).
+  if (length < 1e-17) return value(dot(p, p));
+  for (double& x : e) x /= length;
+
+  // Distance b of the line from the centre, and the signed distance of the start from the foot of the perpendicular.
+  const double t = dot(start, e);
+  const Vec3 foot{start[0] - t * e[0], start[1] - t * e[1], start[2] - t * e[2]};
+  const double b2 = dot(foot, foot);
+  if (!(b2 < 1)) return 0;
+  const double rim = std::sqrt(1 - b2);
+  // What lies inside, from the start of the branch: short lengths keep their digits where t + length would not.
+  const double enter = std::max(0.0, -rim - t);
+  const double leave = std::min(length, rim - t);
+  if (!(enter < leave)) return 0;
+  return norm_ * integral_inside(b2, t + enter, leave - enter) / length;
+}
+
+double LucyKernel::line_integral_gauss(const Vec3& p, const Vec3& a, int n) const {
+  double sum = 0;
+  for (const Node& node : gauss_rule(n)) {
+    const double s = 0.5 * (1 + node.x);
+    const Vec3 x{p[0] + s * a[0], p[1] + s * a[1], p[2] + s * a[2]};
+    sum += node.weight * value(dot(x, x));
+  }
+  return 0.5 * sum;
+}
+
+double LucyKernel::marginal(double z) const {
+  const double zeta = std::abs(z) * inverse_cutoff_;
+  if (!(zeta < 1)) return 0;
+  const double p = (1 - zeta) * (1 - zeta);
+  return 21.0 / 16 * inverse_cutoff_ * p * p * (1 + zeta * (4 + 5 * zeta));
+}
+
+double LucyKernel::marginal_integral(double z) const {
+  const double zeta = std::abs(z) * inverse_cutoff_;
+  if (!(zeta < 1)) return std::copysign(0.5, z);
+  const double z2 = zeta * zeta;
+  const double half = 21.0 / 16 * zeta * (1 + z2 * (-5.0 / 3 + z2 * (3 + zeta * (-8.0 / 3 + 5.0 / 7 * zeta))));
+  return std::copysign(std::min(half, 0.5), z);
+}
+
+double LucyKernel::fourier(double k) const {
+  const double x = std::abs(k) * cutoff_;
+  const double x2 = x * x;
+  // 630 [x² sin x + x (7 cos x + 8) - 15 sin x]/x⁷ cancels as 1/x⁶. Its power series Σ (-1)^m 2520 (m+1)(m+2)
+  // x^{2m}/(2m+7)! has no large terms below x = 4, where the closed form still carries a rounding error of 15·630/x⁶
+  // = 2.3 units.
+  if (x < 4) {
+    double term = 1;
+    double sum = 1;
+    for (int m = 0; std::abs(term) > 1e-18; ++m) {
+      term *= -x2 * (m + 3) / ((m + 1.0) * (2 * m + 8) * (2 * m + 9));
+      sum += term;
+    }
+    return sum;
+  }
+  const double s = std::sin(x);
+  return 630 * (s - 15 * s / x2 + (7 * std::cos(x) + 8) / x) / (x2 * x2 * x);
 }
 
 }  // namespace grainvdb

@@ -5,6 +5,11 @@
 #include <stdexcept>
 
 namespace grainvdb {
+namespace {
+
+constexpr double max_index = 1 << 30;
+
+}  // namespace
 
 Lattice::Lattice(double voxel, const Vec3& origin) : voxel_(voxel), origin_(origin) {
   if (!(voxel > 0) || !std::isfinite(voxel)) throw std::invalid_argument("the voxel size must be positive and finite");
@@ -27,11 +32,25 @@ void Lattice::set_periods(const Box& box) {
       if (std::floor(n) >= 1) text << " and " << box.length(a) / std::floor(n);
       throw std::invalid_argument(text.str());
     }
-    // The first voxel whose centre is inside the box; the small allowance keeps it when rounding puts it a hair below
-    // lo.
-    period_[a] =
-        Period{static_cast<std::int32_t>(std::ceil(to_index(a, box.lo[a]) - 1e-6)), static_cast<std::int32_t>(whole)};
+    if (!(whole < max_index) || !(std::abs(to_index(a, box.lo[a])) < max_index)) {
+      std::ostringstream text;
+      text << "the periodic box is " << n << " voxels long along " << axes[a] << " and begins at voxel "
+           << to_index(a, box.lo[a]) << "; at most " << max_index << " can be indexed";
+      throw std::invalid_argument(text.str());
+    }
+    // The first voxel whose centre is inside the box; the small allowance keeps it when rounding puts it below lo.
+    const double first = std::ceil(to_index(a, box.lo[a]) - 1e-6);
+    period_[a] = Period{static_cast<std::int32_t>(first), static_cast<std::int32_t>(whole), n};
   }
+}
+
+double Lattice::wrap_index(int axis, double u) const {
+  if (!period_[axis]) return u;
+  const double lo = period_[axis]->first - 0.5;
+  const double l = period_[axis]->length;
+  const double v = u - l * std::floor((u - lo) / l);
+  // Rounding can leave v a hair outside when u lies at a bound.
+  return v < lo || v >= lo + l ? lo : v;
 }
 
 std::int32_t Lattice::wrap(int axis, std::int32_t i) const {

@@ -1,11 +1,11 @@
 #pragma once
 /// Fields sampled at particles: the inverse of the splat, for fluctuations about the local mean.
 #include <array>
-#include <span>
 #include <vector>
 
-#include "grainvdb/leaf_buffers.hpp"
+#include "grainvdb/frame.hpp"
 #include "grainvdb/lattice.hpp"
+#include "grainvdb/leaf_buffers.hpp"
 
 namespace grainvdb {
 

@@ -1,0 +1,184 @@
+#include "splat/sample.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace grainvdb {
+namespace {
+
+// Numerator and denominator of a ratio at one voxel.
+struct Terms {
+  Vec3 numerator{};
+  double denominator = 0;
+};
+
+// Looks up single voxels, remembering the leaf of the last one.
+class Reader {
+ public:
+  explicit Reader(const LeafBuffers& buffers) : buffers_(buffers) {}
+
+  // The value of a channel at a voxel; zero outside the topology, where nothing was added.
+  double value(const Coord& c, int channel) {
+    const Coord origin = leaf_origin(c);
+    if (!known_ || origin != origin_) {
+      leaf_ = buffers_.topology()->find(origin);
+      origin_ = origin;
+      known_ = true;
+    }
+    return leaf_ ? buffers_.block(*leaf_, channel)[leaf_offset(c)] : 0;
+  }
+
+ private:
+  const LeafBuffers& buffers_;
+  bool known_ = false;
+  Coord origin_;
+  std::optional<std::size_t> leaf_;
+};
+
+class VoxelRatio {
+ public:
+  explicit VoxelRatio(const RatioView& ratio)
+      : ratio_(ratio), numerator_(*ratio.numerator), denominator_(*ratio.denominator) {}
+
+  Terms operator()(const Coord& c) {
+    Terms t;
+    t.denominator = denominator_.value(c, ratio_.channel);
+    for (int a = 0; a < 3; ++a) t.numerator[a] = numerator_.value(c, ratio_.first + a);
+    return t;
+  }
+
+ private:
+  const RatioView& ratio_;
+  Reader numerator_;
+  Reader denominator_;
+};
+
+// Sums over the homogeneous axes, dense over the bounds of the denominator along the others.
+class Profile {
+ public:
+  Profile(const RatioView& ratio, std::array<bool, 3> homogeneous) : homogeneous_(homogeneous) {
+    const Topology& topology = *ratio.denominator->topology();
+    const auto bounds = topology.bounds();
+    if (!bounds) return;
+    std::size_t size = 1;
+    for (int a = 0; a < 3; ++a) {
+      if (homogeneous[a]) continue;
+      first_[a] = bounds->first[a];
+      count_[a] = std::int64_t{bounds->last[a]} - bounds->first[a] + 1;
+      size *= static_cast<std::size_t>(count_[a]);
+    }
+    sums_.resize(size);
+    // Leaf after leaf in the order of the topology, so that the sums do not depend on threads.
+    for (std::size_t l = 0; l < topology.leaf_count(); ++l) {
+      const double* value = ratio.denominator->block(l, ratio.channel);
+      topology.mask(l).for_each(
+          [&](int offset) { at(voxel_at(topology.origin(l), offset))->denominator += value[offset]; });
+    }
+    const Topology& upper = *ratio.numerator->topology();
+    for (std::size_t l = 0; l < upper.leaf_count(); ++l)
+      upper.mask(l).for_each([&](int offset) {
+        Terms* sum = at(voxel_at(upper.origin(l), offset));
+        if (sum == nullptr) return;
+        for (int a = 0; a < 3; ++a) sum->numerator[a] += ratio.numerator->block(l, ratio.first + a)[offset];
+      });
+  }
+
+  Terms operator()(const Coord& c) {
+    const Terms* sum = at(c);
+    return sum == nullptr ? Terms{} : *sum;
+  }
+
+ private:
+  // The sum that a voxel belongs to; nothing outside the bounds.
+  Terms* at(const Coord& c) {
+    std::size_t i = 0;
+    for (int a = 0; a < 3; ++a) {
+      const std::int64_t k = homogeneous_[a] ? 0 : std::int64_t{c[a]} - first_[a];
+      if (k < 0 || k >= count_[a]) return nullptr;
+      i = i * static_cast<std::size_t>(count_[a]) + static_cast<std::size_t>(k);
+    }
+    return sums_.empty() ? nullptr : &sums_[i];
+  }
+
+  std::array<bool, 3> homogeneous_;
+  std::array<std::int32_t, 3> first_{};
+  std::array<std::int64_t, 3> count_{1, 1, 1};
+  std::vector<Terms> sums_;
+};
+
+// Where a position lies along an axis: between voxel `below`, and the next with weight `fraction`.
+struct Place {
+  std::int32_t below = 0;
+  double fraction = 0;
+};
+
+Place place(const Lattice& lattice, int axis, double x) {
+  const double u = lattice.wrap_index(axis, lattice.to_index(axis, x));
+  if (!(std::abs(u) < std::numeric_limits<std::int32_t>::max() - 1))
+    throw std::invalid_argument("position " + std::to_string(x) + " does not fit the voxel index range");
+  const double below = std::floor(u);
+  return {static_cast<std::int32_t>(below), u - below};
+}
+
+// Σ over the surrounding voxels of their weight times their ratio. Voxels of no weight are not asked for.
+template <class Ratio>
+Vec3 interpolate(const Lattice& lattice, const std::array<Place, 3>& places, Ratio& ratio) {
+  Vec3 result{};
+  for (int corner = 0; corner < 8; ++corner) {
+    const std::array<int, 3> step{corner >> 2, (corner >> 1) & 1, corner & 1};
+    double weight = 1;
+    for (int a = 0; a < 3; ++a) weight *= step[a] == 1 ? places[a].fraction : 1 - places[a].fraction;
+    if (weight == 0) continue;
+    const Coord voxel =
+        lattice.wrap(Coord{places[0].below + step[0], places[1].below + step[1], places[2].below + step[2]});
+    const Terms terms = ratio(voxel);
+    if (!(terms.denominator > 0)) {
+      std::ostringstream text;
+      text << "a field is sampled beside voxel (" << voxel.x << ", " << voxel.y << ", " << voxel.z
+           << "), which no kernel reaches";
+      throw std::logic_error(text.str());
+    }
+    for (int a = 0; a < 3; ++a) result[a] += weight * (terms.numerator[a] / terms.denominator);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Vec3> sample_trilinear(const Lattice& lattice, const RatioView& ratio, const Columns3& position) {
+  std::vector<Vec3> result(position[0].size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.size()), [&](const auto& range) {
+    VoxelRatio at_voxel(ratio);
+    for (std::size_t p = range.begin(); p != range.end(); ++p)
+      result[p] = interpolate(
+          lattice,
+          {place(lattice, 0, position[0][p]), place(lattice, 1, position[1][p]), place(lattice, 2, position[2][p])},
+          at_voxel);
+  });
+  return result;
+}
+
+std::vector<Vec3> sample_profile(const Lattice& lattice, const RatioView& ratio, const Columns3& position,
+                                 std::array<bool, 3> homogeneous) {
+  Profile profile(ratio, homogeneous);
+  std::vector<Vec3> result(position[0].size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.size()), [&](const auto& range) {
+    for (std::size_t p = range.begin(); p != range.end(); ++p) {
+      std::array<Place, 3> places{};
+      for (int a = 0; a < 3; ++a)
+        if (!homogeneous[a]) places[a] = place(lattice, a, position[a][p]);
+      result[p] = interpolate(lattice, places, profile);
+    }
+  });
+  return result;
+}
+
+}  // namespace grainvdb
