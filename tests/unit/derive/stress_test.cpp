@@ -1,0 +1,105 @@
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "unit/derive/fake_input.hpp"
+
+namespace grainvdb::testing {
+namespace {
+
+/// Pressure p and shear stress tau in the xz plane, tension positive.
+std::vector<double> simple_shear(double p, double tau) {
+  return {-p, 0, tau, 0, -p, 0, tau, 0, -p};
+}
+
+// τ/p = 0.4: the three stress ratios that must not be confused.
+TEST(Stress, RatiosOfSimpleShear) {
+  FakeInput in = one_voxel();
+  in.set("stress", simple_shear(100, 40));
+  EXPECT_FLOAT_EQ(static_cast<float>(in.value("pressure")), 100.0F);
+  EXPECT_FLOAT_EQ(static_cast<float>(in.value("shear_stress")), 40.0F);
+  EXPECT_NEAR(in.value("mu"), .4000, .5e-4);
+  EXPECT_NEAR(in.value("mu"), .4, .4 * 0x1p-23);
+  EXPECT_NEAR(std::sqrt(3) * in.value("shear_stress") / in.value("pressure"), .6928, .5e-4);
+  EXPECT_NEAR(in.value("mu_mohr_coulomb"), .43644, .5e-5);
+  EXPECT_NEAR(in.value("mu_mohr_coulomb"), .4 / std::sqrt(1 - .16), .44 * 0x1p-22);
+  EXPECT_EQ(in.reasons_at({}), 0U);
+}
+
+// Of a stress that is not symmetric the whole deviator counts: σ':σ'/2 = (0.3² + 0.1²)/2 for σ_xz = 0.3, σ_zx = 0.1.
+TEST(Stress, TheAntisymmetricPartCounts) {
+  FakeInput in = one_voxel();
+  in.set("stress", {-1, 0, .3, 0, -1, 0, .1, 0, -1});
+  EXPECT_NEAR(in.value("shear_stress"), std::sqrt(.05), 1e-7);
+  // … but the principal stresses are those of the symmetric part, with σ_xz = 0.2.
+  EXPECT_NEAR(in.value("principal_stress", {}, 0), -.8, 1e-7);
+  EXPECT_NEAR(in.value("principal_stress", {}, 2), -1.2, 1e-7);
+}
+
+TEST(Stress, PressureIsPositiveInCompression) {
+  FakeInput in = one_voxel();
+  in.set("stress", {-3, 5, 5, 5, -4, 5, 5, 5, -8});
+  EXPECT_EQ(in.value("pressure"), 5);
+}
+
+TEST(Stress, RatiosNeedAPressureAboveItsMinimum) {
+  const auto mu_at = [](double p, double least) {
+    FakeInput in = one_voxel();
+    in.set("stress", simple_shear(p, 0.5));
+    in.set_option("pressure", "pressure_min", least);
+    in.set("shear_rate", 1.0);
+    in.set("mean_diameter", 1.0);
+    in.set("density", 1500.0);
+    in.set("phi", 0.6);
+    const double mu = in.value("mu");
+    EXPECT_EQ(std::isnan(mu), in.has_reason(Reason::low_pressure));
+    EXPECT_EQ(std::isnan(mu), std::isnan(in.value("fluidity")));
+    EXPECT_EQ(std::isnan(mu), std::isnan(in.value("inertial_number")));
+    EXPECT_TRUE(std::isfinite(in.value("pressure")));
+    EXPECT_TRUE(std::isfinite(in.value("shear_stress")));
+    return mu;
+  };
+  EXPECT_EQ(mu_at(2, 0), .25);
+  EXPECT_TRUE(std::isnan(mu_at(0, 0)));
+  EXPECT_TRUE(std::isnan(mu_at(-2, 0)));  // tension
+  EXPECT_EQ(mu_at(2, 1.9), .25);
+  EXPECT_TRUE(std::isnan(mu_at(2, 2)));  // at the minimum: undefined
+  EXPECT_TRUE(std::isnan(mu_at(2, 3)));
+}
+
+TEST(Stress, InertialNumberTakesTheDensityOfTheGrains) {
+  FakeInput in = one_voxel();
+  in.set("shear_rate", 3.0);
+  in.set("mean_diameter", 0.5);
+  in.set("density", 1500.0);
+  in.set("phi", 0.625);
+  in.set("pressure", 600.0);
+  EXPECT_NEAR(in.value("inertial_number"), 3.0 * 0.5 * std::sqrt(2400.0 / 600.0), 3 * 0x1p-24);  // ρ_p = 2400
+}
+
+// Mohr-Coulomb: a principal stress that is tensile, zero, or positive only by rounding has no ratio.
+TEST(Stress, MohrCoulombNeedsCompressionAllAround) {
+  const auto ratio = [](std::vector<double> stress, double pressure_min, Reason expected) {
+    FakeInput in = one_voxel();
+    in.set("stress", stress);
+    in.set_option("pressure", "pressure_min", pressure_min);
+    const double value = in.value("mu_mohr_coulomb");
+    EXPECT_TRUE(std::isnan(value));
+    EXPECT_TRUE(in.has_reason(expected));
+  };
+  ratio({-1, 0, 0, 0, .1, 0, 0, 0, -2}, 0, Reason::tensile_stress);
+  ratio({-1, 0, 0, 0, 0, 0, 0, 0, -2}, 0, Reason::tensile_stress);
+  ratio({-1, 0, 0, 0, -1e-8, 0, 0, 0, -2}, 0, Reason::tensile_stress);
+  ratio({-1, 0, 0, 0, -1, 0, 0, 0, -2}, 1.5, Reason::low_pressure);
+  ratio({0, 0, 0, 0, 0, 0, 0, 0, 0}, 0, Reason::low_pressure);
+  ratio({0, 0, 0, 0, 0, 0, 0, 0, 0}, 0, Reason::tensile_stress);
+
+  FakeInput isotropic = one_voxel();
+  isotropic.set("stress", simple_shear(5, 0));
+  EXPECT_EQ(isotropic.value("mu_mohr_coulomb"), 0);
+}
+
+}  // namespace
+}  // namespace grainvdb::testing
