@@ -25,7 +25,11 @@ std::string message(const Problem& p) {
 Error::Error(const Problem& problem, int exit_code) : std::runtime_error(message(problem)), exit_code_(exit_code) {}
 
 IoError::IoError(const std::string& action, const std::string& path, int error_number, const std::string& hint)
-    : Error({{path, 0}, error_number == 0 ? action : action + " (" + std::strerror(error_number) + ")", {}, {}, hint},
+    : Error({Location{path},
+             error_number == 0 ? action : action + " (" + std::strerror(error_number) + ")",
+             {},
+             {},
+             hint},
             3) {}
 
 }  // namespace grainvdb
