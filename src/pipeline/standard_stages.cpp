@@ -16,6 +16,15 @@ const StageRegistry& StageRegistry::standard() {
     register_contact_stress(r);
     register_kinetic_stress(r);
     register_stress(r);
+    register_gradients(r);
+    register_rates(r);
+    register_stress_invariants(r);
+    register_rheology(r);
+    register_fluidity(r);
+    register_spin(r);
+    register_principal(r);
+    register_mohr_coulomb(r);
+    register_coaxiality(r);
     register_bookkeeping(r);
     return r;
   }();
