@@ -16,7 +16,7 @@ std::string UnitSystem::symbol(const Dimension& d) const {
     if (power < 0) ++below_count;
     if (!to.empty()) to += ' ';
     to += unit;
-    if (std::abs(power) > 1) to += '^' + std::to_string(std::abs(power));
+    if (std::abs(power) > 1) to.append("^").append(std::to_string(std::abs(power)));
   };
   put(mass, d.mass);
   put(length, d.length);
