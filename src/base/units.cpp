@@ -23,7 +23,7 @@ std::string UnitSystem::symbol(const Dimension& d) const {
   put(time, d.time);
   if (above.empty()) above = "1";
   if (below.empty()) return above;
-  return above + '/' + (below_count > 1 ? '(' + below + ')' : below);
+  return above.append(below_count > 1 ? "/(" : "/").append(below).append(below_count > 1 ? ")" : "");
 }
 
 const std::vector<UnitSystem>& unit_systems() {
