@@ -16,14 +16,14 @@ std::string UnitSystem::symbol(const Dimension& d) const {
     if (power < 0) ++below_count;
     if (!to.empty()) to += ' ';
     to += unit;
-    if (std::abs(power) > 1) to.append("^").append(std::to_string(std::abs(power)));
+    if (std::abs(power) > 1) to += '^' + std::to_string(std::abs(power));
   };
   put(mass, d.mass);
   put(length, d.length);
   put(time, d.time);
-  if (above.empty()) above = "1";
+  if (above.empty()) above.push_back('1');
   if (below.empty()) return above;
-  return above.append(below_count > 1 ? "/(" : "/").append(below).append(below_count > 1 ? ")" : "");
+  return above + '/' + (below_count > 1 ? '(' + below + ')' : below);
 }
 
 const std::vector<UnitSystem>& unit_systems() {
