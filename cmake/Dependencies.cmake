@@ -5,9 +5,11 @@ find_path(OPENVDB_MODULE_DIR FindOpenVDB.cmake
 list(APPEND CMAKE_MODULE_PATH ${OPENVDB_MODULE_DIR})
 
 find_package(TBB REQUIRED)
-find_package(OpenVDB REQUIRED)
+block()  # FindOpenVDB sets BUILD_SHARED_LIBS for whoever calls it; here the user chooses
+  find_package(OpenVDB REQUIRED)
+endblock()
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-find_package(HDF5 REQUIRED COMPONENTS C)
+find_package(HDF5 REQUIRED COMPONENTS C HL)
 find_package(yaml-cpp 0.7 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
@@ -17,5 +19,5 @@ find_package(zstd REQUIRED)
 
 # What the library links but its users need not know.
 set(GRAINVDB_PRIVATE_DEPENDENCIES
-  $<BUILD_INTERFACE:Eigen3::Eigen> hdf5::hdf5 $<BUILD_INTERFACE:yaml-cpp> $<BUILD_INTERFACE:nlohmann_json::nlohmann_json>
-  $<BUILD_INTERFACE:FastFloat::fast_float> ZLIB::ZLIB $<BUILD_INTERFACE:zstd::libzstd_shared>)
+  $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> $<BUILD_INTERFACE:FastFloat::fast_float>
+  hdf5::hdf5_hl hdf5::hdf5 yaml-cpp ZLIB::ZLIB zstd::libzstd_shared)
