@@ -4,11 +4,15 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace grainvdb {
 
 /// A place in a text file. `line` counts from 1; 0 means the file as a whole.
 struct Location {
+  Location() = default;
+  Location(std::string f, std::size_t l = 0) : file(std::move(f)), line(l) {}
+
   std::string file;
   std::size_t line = 0;
 };
