@@ -1,6 +1,7 @@
 #include "pipeline/config_node.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <map>
@@ -177,6 +178,8 @@ class TreeBuilder : public YAML::EventHandler {
     } else if (!parent.key) {
       begin_entry(parent, node);
     } else {
+      if (node.kind == ConfigNode::Kind::null)
+        node.where = parent.key->second;  // the parser only knows what comes next
       parent.node.entries.push_back({std::move(parent.key->first), parent.key->second, std::move(node)});
       parent.key.reset();
     }
@@ -226,6 +229,17 @@ void check_characters(const std::string& text, const std::string& file, const Lo
   }
 }
 
+// Column names such as c_cl[1] are a frequent cause of broken lists.
+std::string hint_for_line(const std::string& text, std::size_t line) {
+  std::istringstream stream(text);
+  std::string words;
+  for (std::size_t i = 0; i < line; ++i) std::getline(stream, words);
+  const auto is_name = [](char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  for (std::size_t i = 1; i < words.size(); ++i)
+    if (words[i] == '[' && is_name(words[i - 1])) return "Names with brackets need quotes inside [] and {}.";
+  return {};
+}
+
 ConfigNode parse(const std::string& text, const std::string& file, const Location* fixed) {
   check_characters(text, file, fixed);
   std::istringstream stream(text);
@@ -235,7 +249,8 @@ ConfigNode parse(const std::string& text, const std::string& file, const Locatio
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& e) {
-    throw ConfigError({builder.place(e.mark), "this is not valid YAML: " + e.msg, {}, {}, {}});
+    const std::size_t line = e.mark.is_null() ? 0 : static_cast<std::size_t>(e.mark.line) + 1;
+    throw ConfigError({builder.place(e.mark), "this is not valid YAML: " + e.msg, {}, {}, hint_for_line(text, line)});
   }
   if (!builder.has_document()) return ConfigNode{};
   return builder.take();

@@ -1,0 +1,51 @@
+#include "pipeline/text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace grainvdb {
+namespace {
+
+const std::vector<std::string> fields{"phi", "velocity", "velocity_gradient", "temperature", "mu", "kinetic_stress"};
+
+TEST(DidYouMean, FindsTheNearestName) {
+  EXPECT_EQ(nearest("velocty", fields), "velocity");         // a letter left out
+  EXPECT_EQ(nearest("velocitty", fields), "velocity");       // one too many
+  EXPECT_EQ(nearest("temperatrue", fields), "temperature");  // two swapped
+  EXPECT_EQ(nearest("ph1", fields), "phi");
+  EXPECT_EQ(nearest("kinetic-stress", fields), "kinetic_stress");
+  EXPECT_EQ(nearest("Temperature", fields), "temperature");
+}
+
+TEST(DidYouMean, CompletesABeginningThatIsUnique) {
+  EXPECT_EQ(nearest("temp", fields), "temperature");
+  EXPECT_EQ(nearest("velo", {"velocity", "velocity_gradient"}), "");  // two names begin so
+}
+
+TEST(DidYouMean, IsSilentWhenNothingIsNear) {
+  EXPECT_EQ(nearest("frobnicate", fields), "");
+  EXPECT_EQ(nearest("", fields), "");
+  EXPECT_EQ(nearest("x", {"y"}), "");  // every letter would change
+  EXPECT_EQ(did_you_mean("frobnicate", fields), "");
+  EXPECT_EQ(nearest(std::string(100'000, 'a'), fields), "");
+}
+
+TEST(InQuotes, CutsAtACharacterAndEscapesControls) {
+  EXPECT_EQ(in_quotes("a b"), "'a b'");
+  EXPECT_EQ(in_quotes("a\n\x1b"), "'a\\x0a\\x1b'");
+  const std::string umlauts = [] {
+    std::string text;
+    for (int i = 0; i < 60; ++i) text += "\xc3\xa4";
+    return text;
+  }();
+  EXPECT_EQ(in_quotes(umlauts), "'" + umlauts.substr(0, 80) + "…'");
+  EXPECT_EQ(in_quotes("x" + umlauts), "'x" + umlauts.substr(0, 80) + "…'");  // byte 80 lies inside a letter
+}
+
+TEST(JoinChoices, ReadsAsASentence) {
+  EXPECT_EQ(join_choices({}), "");
+  EXPECT_EQ(join_choices({"a"}), "a");
+  EXPECT_EQ(join_choices({"a", "b", "c"}), "a, b or c");
+}
+
+}  // namespace
+}  // namespace grainvdb
