@@ -101,7 +101,7 @@ void refuse_unrecognised(const std::string& path, std::string_view head) {
     found = foreign.name;
     break;
   }
-  if (found.empty()) found = "text that begins with " + quoted(head.substr(0, head.find('\n')));
+  if (found.empty()) found = "text that begins with " + in_quotes(head.substr(0, head.find('\n')));
   std::string expected;
   for (const DumpFormat& format : dump_formats()) {
     if (!expected.empty()) expected += " or ";

@@ -22,7 +22,7 @@ std::string_view take_token(std::string_view& line) {
   return token;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 40;
   constexpr char digits[] = "0123456789abcdef";
   std::string result = "'";

@@ -51,6 +51,6 @@ bool parse_whole(std::string_view token, std::int64_t& value);
 std::string_view take_token(std::string_view& line);
 
 /// A text as error messages show it: in quotes, cut after 40 characters, unprintable bytes as \xNN.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace grainvdb

@@ -105,7 +105,7 @@ class RowConverter {
                                const std::string& hint) const {
     throw InputError({{lines_.file(), lines_.line_number()},
                       "bad value in column " + header_.columns[column],
-                      quoted(token),
+                      in_quotes(token),
                       expected,
                       hint});
   }
@@ -115,7 +115,7 @@ class RowConverter {
     for (std::string_view rest = line; !take_token(rest).empty();) ++n;
     throw InputError({{lines_.file(), lines_.line_number()},
                       n < targets_.size() ? "the row is too short" : "the row is too long",
-                      std::to_string(n) + " fields in " + quoted(line),
+                      std::to_string(n) + " fields in " + in_quotes(line),
                       std::to_string(targets_.size()) + " (" + joined(header_.columns) + ")",
                       {}});
   }
@@ -165,7 +165,7 @@ void TextDump::check_end_of_rows() {
   std::string_view line;
   if (!lines_.next(line)) return;
   if (!line.starts_with(item_mark))
-    fail("there is text after the last row of the frame", quoted(line),
+    fail("there is text after the last row of the frame", in_quotes(line),
          "the end of the file or 'ITEM:' after " + std::to_string(header_.rows) + " " + label_);
   lines_.unread();
 }
@@ -191,10 +191,10 @@ Table TextDump::read_rows(const TableRequest& request) {
     if (!lines_.next(line))
       fail("the file ends within a frame", std::to_string(row) + " rows", announced(), cut_off_hint);
     if (!lines_.complete())
-      fail("the last line does not end in a newline, so the frame is incomplete", quoted(line), announced(),
+      fail("the last line does not end in a newline, so the frame is incomplete", in_quotes(line), announced(),
            cut_off_hint);
     if (line.starts_with(item_mark))
-      fail("the next frame begins too early", quoted(line) + " after " + std::to_string(row) + " rows", announced());
+      fail("the next frame begins too early", in_quotes(line) + " after " + std::to_string(row) + " rows", announced());
     rows.add(line);
   }
   check_end_of_rows();

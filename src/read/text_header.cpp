@@ -49,9 +49,9 @@ bool TextHeaderReader::next_section(std::string_view& name) {
   std::string_view line;
   if (!lines_.next(line)) return false;
   if (!line.starts_with(item_mark))
-    fail("a line that belongs to no section", quoted(line), "a line that begins with 'ITEM:'");
+    fail("a line that belongs to no section", in_quotes(line), "a line that begins with 'ITEM:'");
   if (!lines_.complete())
-    fail("the file ends within the header of a frame", quoted(line), {}, std::string(cut_off_hint));
+    fail("the file ends within the header of a frame", in_quotes(line), {}, std::string(cut_off_hint));
   name = trimmed(line.substr(item_mark.size()));
   return true;
 }
@@ -77,19 +77,19 @@ void TextHeaderReader::section(std::string_view name) {
     const std::string label(name.substr(0, name.size() - rest.size()));
     const auto require = [&](bool seen, std::string_view missing) {
       if (!seen)
-        fail("the frame has no 'ITEM: " + std::string(missing) + "'", quoted("ITEM: " + label),
+        fail("the frame has no 'ITEM: " + std::string(missing) + "'", in_quotes("ITEM: " + label),
              "'ITEM: " + std::string(missing) + "' before it");
     };
     require(has_step_, "TIMESTEP");
     require(has_count_, "NUMBER OF " + label);
     require(has_box_, "BOX BOUNDS");
     if (label != label_)
-      fail("the rows are not what was counted", quoted("ITEM: " + label),
+      fail("the rows are not what was counted", in_quotes("ITEM: " + label),
            "'ITEM: " + label_ + "', as the count was of " + label_);
     read_columns(rest);
     done_ = true;
   } else {
-    fail("an unknown section", quoted("ITEM: " + std::string(name)),
+    fail("an unknown section", in_quotes("ITEM: " + std::string(name)),
          "ITEM: UNITS, TIME, TIMESTEP, NUMBER OF, BOX BOUNDS, ATOMS or ENTRIES");
   }
 }
@@ -114,7 +114,7 @@ std::string_view TextHeaderReader::single_value(std::string_view item) {
   std::string_view line = value_line(item);
   const std::string_view whole = line, token = take_token(line);
   if (token.empty() || !line.empty())
-    fail("ITEM: " + std::string(item) + " has no single value", quoted(whole), "one value");
+    fail("ITEM: " + std::string(item) + " has no single value", in_quotes(whole), "one value");
   return token;
 }
 
@@ -126,14 +126,14 @@ void TextHeaderReader::read_units() {
 void TextHeaderReader::read_time() {
   const std::string_view token = single_value("TIME");
   double time = 0;
-  if (!parse_real(token, time)) fail("the time is not a finite number", quoted(token), "a finite decimal number");
+  if (!parse_real(token, time)) fail("the time is not a finite number", in_quotes(token), "a finite decimal number");
   header_.time = time;
 }
 
 void TextHeaderReader::read_step() {
   const std::string_view token = single_value("TIMESTEP");
   if (!parse_whole(token, header_.step) || header_.step < 0)
-    fail("the timestep is not a whole number", quoted(token), "a whole number, 0 or more");
+    fail("the timestep is not a whole number", in_quotes(token), "a whole number, 0 or more");
 }
 
 void TextHeaderReader::read_count(std::string_view label) {
@@ -143,32 +143,32 @@ void TextHeaderReader::read_count(std::string_view label) {
   const std::string_view token = single_value("NUMBER OF " + label_);
   std::int64_t count = 0;
   if (!parse_whole(token, count) || count < 0)
-    fail("the number of " + label_ + " is not a whole number", quoted(token), "a whole number, 0 or more");
+    fail("the number of " + label_ + " is not a whole number", in_quotes(token), "a whole number, 0 or more");
   header_.rows = static_cast<std::size_t>(count);
 }
 
 void TextHeaderReader::read_box(std::string_view text) {
   const std::string all(trimmed(text));
   if (take_word(text = trimmed(text), "abc"))
-    fail("the box is general triclinic", quoted("ITEM: BOX BOUNDS " + all), "an orthogonal box",
+    fail("the box is general triclinic", in_quotes("ITEM: BOX BOUNDS " + all), "an orthogonal box",
          "Fields are gridded in orthogonal boxes only");
   const bool tilted = take_word(text, "xy xz yz");
   constexpr std::string_view letters = "'ITEM: BOX BOUNDS' with two boundary letters per axis, such as pp pp ff";
   if (trimmed(text).empty())
-    fail("the box does not say which axes are periodic", quoted("ITEM: BOX BOUNDS " + all), std::string(letters),
+    fail("the box does not say which axes are periodic", in_quotes("ITEM: BOX BOUNDS " + all), std::string(letters),
          "Old versions of LAMMPS left the letters out: add them to the dump");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::string_view pair = take_token(text);
     constexpr std::string_view known = "pfsm";
     if (pair.size() != 2 || known.find(pair[0]) == std::string_view::npos ||
         known.find(pair[1]) == std::string_view::npos)
-      fail("the boundary letters are not understood", quoted("ITEM: BOX BOUNDS " + all), std::string(letters));
+      fail("the boundary letters are not understood", in_quotes("ITEM: BOX BOUNDS " + all), std::string(letters));
     if ((pair[0] == 'p') != (pair[1] == 'p'))
-      fail("an axis is periodic on one side only", quoted(pair), "pp, or two letters of f, s, m");
+      fail("an axis is periodic on one side only", in_quotes(pair), "pp, or two letters of f, s, m");
     header_.box.periodic[axis] = pair == "pp";
   }
   if (!trimmed(text).empty())
-    fail("the boundary letters are not understood", quoted("ITEM: BOX BOUNDS " + all), std::string(letters));
+    fail("the boundary letters are not understood", in_quotes("ITEM: BOX BOUNDS " + all), std::string(letters));
   for (std::size_t axis = 0; axis < 3; ++axis) read_bounds(axis, tilted);
 }
 
@@ -180,17 +180,17 @@ void TextHeaderReader::read_bounds(std::size_t axis, bool tilted) {
   std::array<double, 3> value{};
   for (std::size_t i = 0; i < (tilted ? 3U : 2U); ++i)
     if (!parse_real(take_token(rest), value[i]))
-      fail("the bounds of the box along " + name + " are not numbers", quoted(line),
+      fail("the bounds of the box along " + name + " are not numbers", in_quotes(line),
            tilted ? "lo, hi and tilt, finite" : "lo and hi, finite");
   if (!trimmed(rest).empty())
-    fail("too many values for the box along " + name, quoted(line), tilted ? "lo, hi and tilt" : "lo and hi",
+    fail("too many values for the box along " + name, in_quotes(line), tilted ? "lo, hi and tilt" : "lo and hi",
          tilted ? "" : "A tilted box has 'xy xz yz' in its ITEM line");
   if (value[2] != 0)
-    fail("the box is tilted (triclinic)", "tilt " + quoted(line), "an orthogonal box (all tilts 0)",
+    fail("the box is tilted (triclinic)", "tilt " + in_quotes(line), "an orthogonal box (all tilts 0)",
          "Fields are gridded in orthogonal boxes only");
-  if (!(value[0] < value[1])) fail("the box is empty along " + name, quoted(line), "lo < hi");
+  if (!(value[0] < value[1])) fail("the box is empty along " + name, in_quotes(line), "lo < hi");
   if (value[1] - value[0] > std::numeric_limits<double>::max())
-    fail("the box is too long along " + name, quoted(line), "a length that is a finite number");
+    fail("the box is too long along " + name, in_quotes(line), "a length that is a finite number");
   header_.box.lo[axis] = value[0];
   header_.box.hi[axis] = value[1];
 }
@@ -200,7 +200,7 @@ void TextHeaderReader::read_columns(std::string_view text) {
     header_.columns.emplace_back(token);
   header_.columns_line = lines_.line_number();
   if (header_.columns.empty())
-    fail("the columns have no names", quoted("ITEM: " + label_),
+    fail("the columns have no names", in_quotes("ITEM: " + label_),
          "'ITEM: " + label_ + "' followed by the names of the columns");
 }
 
