@@ -1,0 +1,57 @@
+#pragma once
+/// The coarse-grained fields of physics section 3 by brute force, from the formulas alone.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "grainvdb/pipeline.hpp"
+#include "support/kernel_sums.hpp"
+#include "support/uncertain.hpp"
+#include "support/voxel_box.hpp"
+
+namespace grainvdb::testing {
+
+/// How exactly sums are formed by the program: relative to Σ |terms|, in double. (Storing in a float grid comes on
+/// top.) A thousand terms and a few roundings each stay below 1000 × 2⁻⁵² = 2.2e-13; the quadrature of the reference's
+/// line integrals is good to about that as well.
+inline constexpr double sum_rounding = 1e-12;
+/// What is asked of every field on float grids: error ≤ 1e-5 Σ |terms|.
+static_assert(float_rounding + sum_rounding <= 1e-5);
+
+/// A field, laid out [voxel][component]; NaN where it is undefined.
+struct ReferenceField {
+  int components = 1;
+  std::vector<double> value;
+  std::vector<double> magnitude;  ///< Σ |terms| of the numerator over the denominator
+  std::vector<double> floor;      ///< error from rounding inside the terms, absolute
+
+  std::size_t index(std::size_t voxel, int component) const {
+    return voxel * static_cast<std::size_t>(components) + static_cast<std::size_t>(component);
+  }
+  /// The value with the error that computing in double and storing as float may leave.
+  Uncertain expected(std::size_t voxel, int component = 0) const;
+};
+
+struct Reference {
+  VoxelBox box;
+  std::vector<int> particle_frames;  ///< frames in which a particle's kernel reached the voxel
+  std::vector<int> any_frames;       ///< the same for particles or contacts
+  /// phi, density, velocity, mean_diameter, angular_velocity, temperature, rotational_fluctuation, contact_stress,
+  /// kinetic_stress, and gradient_by_kernel. temperature in mode one_pass_corrected is the uncorrected one.
+  std::map<std::string, ReferenceField> fields;
+};
+
+/// Averages over the frames as one window, with the options and the selection of the pipeline.
+Reference coarse_grain(const std::vector<Frame>& frames, const Pipeline& pipeline);
+
+/// The particles of a frame that the selection keeps.
+Particles material(const Frame& frame, const Selection& selection);
+
+/// numerator/denominator at the voxels, interpolated trilinearly, periodic.
+std::vector<Vec3> interpolate(const VoxelBox& box, const Sums& numerator, const Sums& denominator,
+                              const Columns3& position);
+/// The same with both summed over the homogeneous axes first.
+std::vector<Vec3> interpolate_profile(const VoxelBox& box, const Sums& numerator, const Sums& denominator,
+                                      const Columns3& position, std::array<bool, 3> homogeneous);
+
+}  // namespace grainvdb::testing
