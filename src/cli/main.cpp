@@ -69,7 +69,7 @@ int bad_command_line(const CLI::App& app, const CLI::ParseError& error) {
       message = std::string(is_option    ? "unknown option "
                             : no_command ? "unknown command "
                                          : "unexpected argument ") +
-                in_quotes(word) + (guess.empty() ? "" : ". " + guess);
+                quote_text(word) + (guess.empty() ? "" : ". " + guess);
     }
   }
   std::string command = "grainvdb";

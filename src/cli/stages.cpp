@@ -132,7 +132,7 @@ void list_stages(const Options& options) {
   }
   if (stages.empty())
     throw ConfigError({{},
-                       "there is no stage " + in_quotes(options.name),
+                       "there is no stage " + quote_text(options.name),
                        {},
                        join_choices(names),
                        did_you_mean(options.name, names)});

@@ -120,7 +120,7 @@ class TreeBuilder : public YAML::EventHandler {
   void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
     if (!tag.empty() && tag != "?" && tag != "!")
       throw ConfigError(
-          {place(mark), "YAML tags are not used in pipeline files", in_quotes(tag), {}, "Remove the tag."});
+          {place(mark), "YAML tags are not used in pipeline files", quote_text(tag), {}, "Remove the tag."});
   }
 
   void spend(const Cost& cost, const Location& where) {
@@ -194,7 +194,7 @@ class TreeBuilder : public YAML::EventHandler {
     if (!is_new)
       throw ConfigError(
           {key.where,
-           "the key " + in_quotes(key.text) + " is repeated",
+           "the key " + quote_text(key.text) + " is repeated",
            {},
            {},
            it->second.line == 0 ? "" : "It stands first in line " + std::to_string(it->second.line) + "."});
@@ -223,7 +223,8 @@ void check_characters(const std::string& text, const std::string& file, const Lo
       valid = (static_cast<unsigned char>(text[i + k]) & 0xC0U) == 0x80U;
     if (!valid) throw ConfigError({here(), "this is not UTF-8 text", {}, "YAML text in UTF-8", {}});
     if ((byte < 0x20 && byte != '\t' && byte != '\n' && byte != '\r') || byte == 0x7F)
-      throw ConfigError({here(), "this text holds a control character", in_quotes(text.substr(i, 1)), "YAML text", {}});
+      throw ConfigError(
+          {here(), "this text holds a control character", quote_text(text.substr(i, 1)), "YAML text", {}});
     if (byte == '\n') ++line;
     i += length;
   }
@@ -274,7 +275,7 @@ std::string ConfigNode::kind_name() const {
     case Kind::scalar:
       break;
   }
-  return quoted ? "the text " + in_quotes(text) + " in quotes" : in_quotes(text);
+  return quoted ? "the text " + quote_text(text) + " in quotes" : quote_text(text);
 }
 
 ConfigNode read_config(const std::string& file) {

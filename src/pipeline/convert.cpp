@@ -60,7 +60,7 @@ std::string text_value(const KeyInfo& key, const ConfigNode& node) {
   const std::string& text = scalar(key, node);
   if (text.empty()) refuse(key, node, "is empty");
   if (!key.choices.empty() && std::find(key.choices.begin(), key.choices.end(), text) == key.choices.end())
-    throw ConfigError({node.where, "unknown name in " + key.path(), in_quotes(text), join_choices(key.choices),
+    throw ConfigError({node.where, "unknown name in " + key.path(), quote_text(text), join_choices(key.choices),
                        did_you_mean(text, key.choices)});
   return text;
 }
@@ -91,7 +91,7 @@ std::vector<std::string> texts(const KeyInfo& key, const ConfigNode& node) {
   std::unordered_set<std::string> seen;
   for (std::size_t i = 0; i < result.size(); ++i)
     if (!seen.insert(result[i]).second)
-      throw ConfigError({node.items[i].where, key.path() + " names " + in_quotes(result[i]) + " twice", {}, {}, {}});
+      throw ConfigError({node.items[i].where, key.path() + " names " + quote_text(result[i]) + " twice", {}, {}, {}});
   return result;
 }
 

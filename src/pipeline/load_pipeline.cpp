@@ -72,7 +72,7 @@ class Validation {
   void section(const std::string& path, const Location& where, const ConfigNode& node) {
     if (node.kind != ConfigNode::Kind::mapping)
       throw ConfigError({node.where,
-                         (path.empty() ? "the pipeline file" : "section " + in_quotes(path)) +
+                         (path.empty() ? "the pipeline file" : "section " + quote_text(path)) +
                              (node.kind == ConfigNode::Kind::null ? " is empty" : " must hold keys"),
                          node.kind == ConfigNode::Kind::null ? "" : node.kind_name(),
                          names_in(path),
@@ -111,7 +111,7 @@ class Validation {
     if (hint.empty()) hint = elsewhere(entry.key);
     const char* kind = path == "stages" ? "unknown stage " : "unknown key ";
     throw ConfigError({entry.where,
-                       kind + in_quotes(entry.key) + (path.empty() ? "" : " in section " + in_quotes(path)),
+                       kind + quote_text(entry.key) + (path.empty() ? "" : " in section " + quote_text(path)),
                        {},
                        names_in(path),
                        hint});
@@ -120,9 +120,9 @@ class Validation {
   // A key that was put into the wrong section.
   std::string elsewhere(const std::string& name) const {
     for (const KeyInfo& key : schema_.keys)
-      if (key.name == name) return "There is " + in_quotes(key.path()) + '.';
+      if (key.name == name) return "There is " + quote_text(key.path()) + '.';
     for (const SectionInfo& s : schema_.sections)
-      if (s.name() == name) return "There is " + in_quotes(s.path) + '.';
+      if (s.name() == name) return "There is " + quote_text(s.path) + '.';
     return {};
   }
 

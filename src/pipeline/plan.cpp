@@ -53,14 +53,14 @@ class StageOrder {
       std::vector<std::string> names;
       for (const Stage& s : registry_.stages()) names.push_back(s.name);
       throw ConfigError({pipeline_.location("output.fields"),
-                         "no stage makes the field " + in_quotes(field) + ", which " + asker + " asks for",
+                         "no stage makes the field " + quote_text(field) + ", which " + asker + " asks for",
                          {},
                          join_choices(names),
                          did_you_mean(field, names)});
     }
     const StageNeeds needs = stage->needs ? stage->needs(pipeline_.stages) : StageNeeds{};
     path_.push_back(field);
-    for (const std::string& need : needs.fields) visit(need, "stage " + in_quotes(field));
+    for (const std::string& need : needs.fields) visit(need, "stage " + quote_text(field));
     path_.pop_back();
     needs_.emplace(field, needs);
   }
@@ -140,7 +140,7 @@ void check_cutoff(const Pipeline& pipeline, const Stage& stage, const Moment& mo
   if (samples && pipeline.cutoff < least)
     throw ConfigError(
         {pipeline.location("kernel.cutoff"),
-         "the kernel is too narrow for " + in_quotes(stage.name) + ", which interpolates to the particles",
+         "the kernel is too narrow for " + quote_text(stage.name) + ", which interpolates to the particles",
          "kernel.cutoff " + print_number(pipeline.cutoff) + " at lattice.voxel " + print_number(pipeline.voxel),
          "a cutoff of at least sqrt(3) voxels, " + print_number(least), "Use smaller voxels or a wider kernel."});
   for (const auto* needs : {&moment.frame_needs, &moment.mean_needs})

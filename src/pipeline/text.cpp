@@ -31,7 +31,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string in_quotes(std::string_view text) {
+std::string quote_text(std::string_view text) {
   constexpr std::size_t longest = 80;
   static constexpr char hex[] = "0123456789abcdef";
   std::string result = "'";
@@ -85,7 +85,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& candi
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
   const std::string guess = nearest(word, candidates);
-  return guess.empty() ? std::string() : "Did you mean " + in_quotes(guess) + "?";
+  return guess.empty() ? std::string() : "Did you mean " + quote_text(guess) + "?";
 }
 
 }  // namespace grainvdb

@@ -7,7 +7,7 @@
 namespace grainvdb {
 
 /// The text in single quotes, cut to a readable length, control characters escaped.
-std::string in_quotes(std::string_view text);
+std::string quote_text(std::string_view text);
 
 /// "a, b or c", each in plain text.
 std::string join_choices(const std::vector<std::string>& choices);

@@ -29,16 +29,16 @@ TEST(DidYouMean, IsSilentWhenNothingIsNear) {
   EXPECT_EQ(nearest(std::string(100'000, 'a'), fields), "");
 }
 
-TEST(InQuotes, CutsAtACharacterAndEscapesControls) {
-  EXPECT_EQ(in_quotes("a b"), "'a b'");
-  EXPECT_EQ(in_quotes("a\n\x1b"), "'a\\x0a\\x1b'");
+TEST(QuoteText, CutsAtACharacterAndEscapesControls) {
+  EXPECT_EQ(quote_text("a b"), "'a b'");
+  EXPECT_EQ(quote_text("a\n\x1b"), "'a\\x0a\\x1b'");
   const std::string umlauts = [] {
     std::string text;
     for (int i = 0; i < 60; ++i) text += "\xc3\xa4";
     return text;
   }();
-  EXPECT_EQ(in_quotes(umlauts), "'" + umlauts.substr(0, 80) + "…'");
-  EXPECT_EQ(in_quotes("x" + umlauts), "'x" + umlauts.substr(0, 80) + "…'");  // byte 80 lies inside a letter
+  EXPECT_EQ(quote_text(umlauts), "'" + umlauts.substr(0, 80) + "…'");
+  EXPECT_EQ(quote_text("x" + umlauts), "'x" + umlauts.substr(0, 80) + "…'");  // byte 80 lies inside a letter
 }
 
 TEST(JoinChoices, ReadsAsASentence) {
