@@ -15,7 +15,7 @@ namespace grainvdb {
 struct FieldMeta {
   std::string name;         ///< as in the field table, e.g. "contact_stress"
   std::string unit;         ///< e.g. "Pa"; "1" for pure numbers
-  int components = 1;       ///< 1, 3 (vector) or 9 (row-major tensor ij)
+  int components = 1;       ///< 1, 3 (vector), 6 (two vectors) or 9 (row-major tensor ij)
   std::string description;  ///< one line
   std::string equation;     ///< formula with its tag, e.g. "Σ V W (6)"
   float background = 0.0F;  ///< value where no kernel reaches: 0 for sums such as phi, NaN for ratios such as velocity
