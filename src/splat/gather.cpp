@@ -12,6 +12,14 @@ LeafWindow::LeafWindow(const Lattice& lattice, const Coord& leaf) : origin(leaf)
   }
 }
 
+LeafMask LeafWindow::mask() const {
+  LeafMask mask;
+  for (int i = first[0]; i <= last[0]; ++i)
+    for (int j = first[1]; j <= last[1]; ++j)
+      for (int k = first[2]; k <= last[2]; ++k) mask.set((i << 6) | (j << 3) | k);
+  return mask;
+}
+
 std::vector<Coord> leaves_in_reach(const Lattice& lattice, const Buckets& buckets, double reach) {
   std::vector<Coord> leaves;
   for (std::size_t cell = 0; cell < buckets.cells.size(); ++cell) {

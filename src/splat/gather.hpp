@@ -21,6 +21,7 @@ struct LeafWindow {
   Coord origin;
   std::array<int, 3> first{};
   std::array<int, 3> last{};
+  LeafMask mask() const;
 };
 
 /// The leaves with a voxel of the stored period within `reach` (in voxels) of the extent of any cell's entries,
@@ -87,8 +88,10 @@ std::shared_ptr<const Topology> reached_voxels(const Lattice& lattice, const Buc
   std::vector<LeafMask> masks(leaves.size());
   tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t l) {
     const LeafWindow window(lattice, leaves[l]);
+    const LeafMask all = window.mask();
     LeafMask& mask = masks[l];
     for_each_entry(buckets, leaves[l], reach, [&](std::size_t entry) {
+      if (mask == all) return;
       visit(entry, window, [&](int offset, auto&& weight) {
         if (!mask.test(offset) && weight() > 0) mask.set(offset);
       });

@@ -9,8 +9,8 @@
 
 namespace grainvdb {
 
-/// A vector ratio on leaf buffers: channels first … first+2 of `numerator` over one channel of `denominator`. Both may be
-/// the same buffers; their topologies may differ.
+/// A vector ratio on leaf buffers: channels first … first+2 of `numerator` over one channel of `denominator`. Both may
+/// be the same buffers; their topologies may differ.
 struct RatioView {
   const LeafBuffers* numerator = nullptr;
   int first = 0;
