@@ -2,6 +2,7 @@
 #include <iostream>
 #include <locale>
 #include <memory>
+#include <numeric>
 #include <sstream>
 
 #include "cli/commands.hpp"
@@ -19,22 +20,6 @@ struct Options {
   InputSpec input;
   bool list = false;
 };
-
-struct OpenedDumps {
-  std::unique_ptr<FrameSource> source;
-  bool units_known = true;
-};
-
-// A look at a dump must not fail for want of a unit system; nothing below depends on it.
-OpenedDumps open_any_units(InputSpec spec) {
-  try {
-    return {open_dumps(spec), true};
-  } catch (const InputError&) {
-    if (spec.units) throw;
-    spec.units = "si";
-    return {open_dumps(spec), false};
-  }
-}
 
 std::string frame_text(const FrameInfo& frame) {
   std::ostringstream text;
@@ -95,16 +80,16 @@ void print_columns(const char* what, const std::vector<std::string>& columns) {
 }
 
 void info(const Options& options) {
-  const OpenedDumps dumps = open_any_units(options.input);
-  print_frames(dumps.source->frames(), options.list);
-  print_columns("columns", dumps.source->particle_columns());
-  const std::vector<std::string> contact_columns = dumps.source->contact_columns();
+  const auto source = open_dumps(options.input);
+  print_frames(source->frames(), options.list);
+  print_columns("columns", source->particle_columns());
+  const std::vector<std::string> contact_columns = source->contact_columns();
   if (!contact_columns.empty()) print_columns("contact columns", contact_columns);
-  std::cout << "units: "
-            << (dumps.units_known ? dumps.source->units().name : "not in the dump; the pipeline file must say") << '\n';
-  std::uintmax_t bytes = 0;
-  for (const auto& [file, size] : dumps.source->files()) bytes += size;
-  std::cout << "files: " << dumps.source->files().size() << ", " << bytes << " bytes\n";
+  std::cout << "units: " << source->units().name << '\n';
+  const auto files = source->files();
+  const std::uintmax_t bytes = std::accumulate(files.begin(), files.end(), std::uintmax_t{0},
+                                               [](std::uintmax_t sum, const auto& file) { return sum + file.second; });
+  std::cout << "files: " << files.size() << ", " << bytes << " bytes\n";
 }
 
 }  // namespace

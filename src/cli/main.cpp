@@ -55,26 +55,23 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+// What is wrong with the first word that was not understood.
+std::string unknown_word(const CLI::App& app, const std::string& word) {
+  const bool is_option = word.starts_with('-');
+  const bool is_command = !is_option && app.get_subcommands().empty();
+  std::string guess;
+  if (is_option) guess = did_you_mean(word.substr(0, word.find('=')), option_names(app));
+  if (is_command) guess = did_you_mean(word, command_names(app));
+  const char* kind = is_option ? "unknown option " : is_command ? "unknown command " : "unexpected argument ";
+  return kind + quote_text(word) + (guess.empty() ? "" : ". " + guess);
+}
+
 int bad_command_line(const CLI::App& app, const CLI::ParseError& error) {
-  std::string message = error.what();
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
-    const std::vector<std::string> rest = app.remaining(true);
-    const bool no_command = app.get_subcommands().empty();
-    if (!rest.empty()) {
-      const std::string& word = rest.front();
-      const bool is_option = word.starts_with('-');
-      const std::string guess = did_you_mean(word.substr(0, word.find('=')), is_option    ? option_names(app)
-                                                                             : no_command ? command_names(app)
-                                                                                          : std::vector<std::string>{});
-      message = std::string(is_option    ? "unknown option "
-                            : no_command ? "unknown command "
-                                         : "unexpected argument ") +
-                quote_text(word) + (guess.empty() ? "" : ". " + guess);
-    }
-  }
+  const std::vector<std::string> rest = app.remaining(true);
   std::string command = "grainvdb";
   for (const CLI::App* sub : app.get_subcommands()) command += ' ' + sub->get_name();
-  return fail(bad_usage, message + "\nRun '" + command + " --help' for usage.");
+  return fail(bad_usage, (rest.empty() ? error.what() : unknown_word(app, rest.front())) + "\nRun '" + command +
+                             " --help' for usage.");
 }
 
 int run(int argc, char** argv) {

@@ -9,6 +9,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/open_input.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/progress_line.hpp"
 #include "cli/report.hpp"
@@ -50,7 +51,7 @@ void run(const Options& options) {
   const Pipeline pipeline = load_pipeline(options.pipeline.file, overrides);
   const Plan plan = make_plan(pipeline);
   check_output_folder(options.output);
-  const auto source = open_dumps(pipeline.input);
+  const auto source = open_input(pipeline, plan);
   const auto sinks = make_sinks(pipeline, options.output);
 
   watch_for_interrupts();

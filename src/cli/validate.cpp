@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "cli/commands.hpp"
+#include "cli/open_input.hpp"
 #include "grainvdb/run.hpp"
 
 namespace grainvdb::cli {
@@ -23,7 +24,7 @@ void validate(const Options& options) {
   const Pipeline pipeline = load_pipeline(options.pipeline.file, options.pipeline.overrides);
   const Plan plan = make_plan(pipeline);
   if (!options.no_input) {
-    const auto source = open_dumps(pipeline.input);
+    const auto source = open_input(pipeline, plan);
     check_against_input(pipeline, plan, *source);
     ColumnSet columns;
     for (const Sweep& sweep : plan.sweeps) columns |= sweep.columns;

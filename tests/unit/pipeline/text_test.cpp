@@ -32,13 +32,12 @@ TEST(DidYouMean, IsSilentWhenNothingIsNear) {
 TEST(QuoteText, CutsAtACharacterAndEscapesControls) {
   EXPECT_EQ(quote_text("a b"), "'a b'");
   EXPECT_EQ(quote_text("a\n\x1b"), "'a\\x0a\\x1b'");
-  const std::string umlauts = [] {
-    std::string text;
-    for (int i = 0; i < 60; ++i) text += "\xc3\xa4";
-    return text;
-  }();
-  EXPECT_EQ(quote_text(umlauts), "'" + umlauts.substr(0, 80) + "…'");
-  EXPECT_EQ(quote_text("x" + umlauts), "'x" + umlauts.substr(0, 80) + "…'");  // byte 80 lies inside a letter
+  std::string umlauts;  // of two bytes each
+  for (int i = 0; i < 60; ++i) umlauts += "\xc3\xa4";
+  const std::string first_forty = umlauts.substr(0, 80);
+  EXPECT_EQ(quote_text(umlauts), std::string("'").append(first_forty).append("…'"));
+  // Byte 80 lies inside a letter.
+  EXPECT_EQ(quote_text(std::string("x").append(umlauts)), std::string("'x").append(first_forty).append("…'"));
 }
 
 TEST(JoinChoices, ReadsAsASentence) {

@@ -1,0 +1,15 @@
+#include "cli/open_input.hpp"
+
+#include <algorithm>
+
+namespace grainvdb::cli {
+
+std::unique_ptr<FrameSource> open_input(const Pipeline& pipeline, const Plan& plan) {
+  InputSpec spec = pipeline.input;
+  if (std::none_of(plan.sweeps.begin(), plan.sweeps.end(),
+                   [](const Sweep& sweep) { return sweep.columns.has(Column::contacts); }))
+    spec.contacts = {};
+  return open_dumps(spec);
+}
+
+}  // namespace grainvdb::cli

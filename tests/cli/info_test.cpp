@@ -1,0 +1,58 @@
+#include <gmock/gmock.h>
+
+#include "cli/command.hpp"
+#include "cli/example_dumps.hpp"
+
+namespace grainvdb::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Info, SaysWhatIsInTheDumps) {
+  const Folder folder;
+  write_dumps(folder);
+  const CommandResult result = run_command({"info", "frames/dump*.txt"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("frames: 3\n"), HasSubstr("first step 0, 64 particles"), HasSubstr("last  step 200"),
+                    HasSubstr("spacing: 100 steps"), HasSubstr("particles: 64\n"),
+                    HasSubstr("box: x 0 ... 4 periodic, y 0 ... 4 periodic, z 0 ... 4 periodic\n"),
+                    HasSubstr("columns: id type x y z vx vy vz radius mass (10)"), HasSubstr("units: unspecified")));
+  EXPECT_THAT(result.out, Not(HasSubstr("contact columns")));
+  const auto bytes = std::to_string(dump_text(0).size() + dump_text(100).size() + dump_text(200).size());
+  EXPECT_THAT(result.out, HasSubstr("files: 3, " + bytes + " bytes"));
+}
+
+TEST(Info, ShowsContactsTimesAndEveryFrame) {
+  const Folder folder;
+  write_dumps(folder);
+  const CommandResult result = run_command(
+      {"info", "frames/dump0.txt", "frames/dump200.txt", "--contacts", "frames/contacts*.txt", "--dt", "0.5", "--list"},
+      folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("frames: 2\n"), HasSubstr("step 200, time 100, 64 particles  frames/dump200.txt"),
+                    HasSubstr("contact columns: id1 id2 fx fy fz (5)")));
+}
+
+TEST(Info, NamesTheUnitsOfTheDump) {
+  const Folder folder;
+  folder.write("d.txt", "ITEM: UNITS\nlj\n" + dump_text(5));
+  const CommandResult result = run_command({"info", "d.txt"}, folder.path());
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("units: lj\n"));
+}
+
+TEST(Info, RefusesWhatIsNoDump) {
+  const Folder folder;
+  folder.write("d.txt", "hello\n");
+  EXPECT_EQ(run_command({"info", "d.txt"}, folder.path()).exit_code, 2);
+  EXPECT_EQ(run_command({"info", "no_such_*"}, folder.path()).exit_code, 2);
+  EXPECT_EQ(run_command({"info"}, folder.path()).exit_code, 1);
+  EXPECT_EQ(run_command({"info", "d.txt", "--dt", "0"}, folder.path()).exit_code, 1);
+}
+
+}  // namespace
+}  // namespace grainvdb::test
