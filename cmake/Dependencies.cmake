@@ -6,6 +6,7 @@ list(APPEND CMAKE_MODULE_PATH ${OPENVDB_MODULE_DIR})
 
 find_package(TBB REQUIRED)
 block()  # FindOpenVDB sets BUILD_SHARED_LIBS for whoever calls it; here the user chooses
+  set(CMAKE_MESSAGE_LOG_LEVEL WARNING)  # it also reports Python modules of Imath that nobody needs
   find_package(OpenVDB REQUIRED)
 endblock()
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)

@@ -1,13 +1,18 @@
-// A user of the installed library: reaches the kernel, the lattice, the registry of stages and an OpenVDB grid.
+// A user of the installed library. Touches what pulls in each dependency: OpenVDB, HDF5, yaml-cpp and the
+// decompressors.
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
 #include <vector>
 
+#include "grainvdb/error.hpp"
+#include "grainvdb/field_sink.hpp"
+#include "grainvdb/frame_source.hpp"
 #include "grainvdb/grids.hpp"
 #include "grainvdb/kernel.hpp"
 #include "grainvdb/lattice.hpp"
+#include "grainvdb/pipeline.hpp"
 #include "grainvdb/sparse_field.hpp"
 #include "grainvdb/stage.hpp"
 #include "grainvdb/version.hpp"
@@ -37,6 +42,14 @@ int main() {
   const auto topology = std::make_shared<const Topology>(std::vector{Coord{0, 0, 0}}, std::vector{mask});
   const SparseField field({.name = "phi", .unit = "1", .description = "", .equation = ""}, topology, lattice);
   expect(field.grids().components.at(0)->activeVoxelCount() == 1, "the grid of a field");
+
+  expect(sink_registry().at(0).name == "hdf5", "the HDF5 output");
+  expect(pipeline_schema().find("\"cutoff\"") != std::string::npos, "the schema of pipeline files");
+  try {
+    open_dumps({.particles = {"no-such.dump"}, .units = "si"});
+    expect(false, "a missing dump is an error");
+  } catch (const Error&) {
+  }
 
   std::cout << "grainvdb " << GRAINVDB_VERSION << " works from another project\n";
 }
