@@ -19,6 +19,12 @@ struct FieldCopy {
   bool active(const Coord& c) const;
   /// The background outside the topology.
   float at(const Coord& c, int component = 0) const;
+  /// Calls f(voxel) for every active voxel.
+  template <class F>
+  void for_each_active(F&& f) const {
+    for (std::size_t l = 0; l < topology->leaf_count(); ++l)
+      topology->mask(l).for_each([&](int offset) { f(voxel_at(topology->origin(l), offset)); });
+  }
 };
 
 /// What was written for one output time.
