@@ -1,5 +1,7 @@
 #include "read/columns.hpp"
 
+#include "read/text.hpp"
+
 namespace grainvdb {
 namespace {
 
@@ -41,9 +43,7 @@ std::array<std::size_t, 3> ColumnFinder::real3(const std::array<std::string, 3>&
 }
 
 std::string ColumnFinder::names() const {
-  std::string text;
-  for (const std::string& name : header_.columns) text += (text.empty() ? "" : " ") + name;
-  return text;
+  return joined(header_.columns);
 }
 
 Location stated_at(const InputSpec& spec, std::string key) {

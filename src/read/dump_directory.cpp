@@ -8,6 +8,7 @@
 #include "read/dump_series.hpp"
 #include "read/file_list.hpp"
 #include "read/particle_table.hpp"
+#include "read/text.hpp"
 
 namespace grainvdb {
 namespace {
@@ -27,7 +28,7 @@ std::string known_units() {
 const UnitSystem& unit_system_in_dump(const Stated& stated) {
   const UnitSystem* system = find_unit_system(stated.text);
   if (system == nullptr)
-    throw InputError({stated.where, "the units are not supported", stated.text, known_units(),
+    throw InputError({stated.where, "the units are not supported", in_quotes(stated.text), known_units(),
                       "In other unit systems of LAMMPS a stress is not mass/(length time²)"});
   return *system;
 }
@@ -86,7 +87,7 @@ InputFiles find_files(const InputSpec& spec) {
   return files;
 }
 
-std::string joined(const std::vector<std::string>& patterns) {
+std::string listed(const std::vector<std::string>& patterns) {
   std::string all;
   for (const std::string& pattern : patterns) all += (all.empty() ? "'" : ", '") + pattern + "'";
   return all;
@@ -123,7 +124,7 @@ DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
   if (particles_.frames().empty())
     throw InputError(
         {stated_at(spec, "input.particles"),
-         spec.particles.empty() ? "no particle dumps are given" : "no particle dump in " + joined(spec.particles),
+         spec.particles.empty() ? "no particle dumps are given" : "no particle dump in " + listed(spec.particles),
          {},
          "paths, directories or globs of particle dumps",
          {}});
@@ -179,7 +180,7 @@ Contacts DumpDirectory::read_contacts(std::int64_t step) {
   if (contacts_->units() && find_unit_system(units_.name) != nullptr && contacts_->units()->text != units_.name)
     throw InputError({contacts_->units()->where,
                       "the units are not those of the particle dumps",
-                      contacts_->units()->text,
+                      in_quotes(contacts_->units()->text),
                       units_.name,
                       {}});
   const std::optional<std::size_t> k = contacts_->find(step);
@@ -187,7 +188,7 @@ Contacts DumpDirectory::read_contacts(std::int64_t step) {
     throw InputError({where, "no contact dump has timestep " + std::to_string(step),
                       std::to_string(contacts_->frames().size()) + " other timesteps in the " +
                           std::to_string(contacts_->files().size()) + " contact files of " +
-                          joined(spec_.contacts.files),
+                          listed(spec_.contacts.files),
                       "one contact frame for every particle frame that is used",
                       "Choose the frames that have contacts, or fields that need none"});
   const FrameHeader& header = contacts_->go_to(*k);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "grainvdb/error.hpp"
+#include "read/text.hpp"
 
 namespace grainvdb {
 namespace {
@@ -102,8 +103,8 @@ void DumpSeries::note_units(const FrameHeader& header, const std::string& path) 
   else if (units_->text != *header.units)
     throw InputError({here,
                       "the units are not those of the other dumps",
-                      *header.units,
-                      units_->text + ", as in " + to_string(units_->where),
+                      in_quotes(*header.units),
+                      in_quotes(units_->text) + ", as in " + to_string(units_->where),
                       {}});
 }
 

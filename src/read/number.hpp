@@ -3,18 +3,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <string_view>
 #include <system_error>
 
 #include <fast_float/fast_float.h>
 
-namespace grainvdb {
+#include "read/text.hpp"
 
-/// What separates the fields of a line; a carriage return counts, so that lines may end in CRLF.
-constexpr bool is_blank(char c) {
-  return c == ' ' || c == '\t' || c == '\r';
-}
+namespace grainvdb {
 
 /// Parses the token that begins at p. Returns its end, or nullptr when it is not one finite decimal number.
 inline const char* parse_real(const char* p, const char* end, double& value) {
@@ -46,11 +42,5 @@ inline const char* parse_whole(const char* p, const char* end, std::int64_t& val
 /// The same for a text that is the token.
 bool parse_real(std::string_view token, double& value);
 bool parse_whole(std::string_view token, std::int64_t& value);
-
-/// Takes the next token off the front of a line; empty at its end.
-std::string_view take_token(std::string_view& line);
-
-/// A text as error messages show it: in quotes, cut after 40 characters, unprintable bytes as \xNN.
-std::string in_quotes(std::string_view text);
 
 }  // namespace grainvdb

@@ -13,12 +13,6 @@ namespace {
 constexpr std::string_view item_mark = "ITEM:";
 constexpr const char* cut_off_hint = "The file was cut off, or is still being written: leave this frame out";
 
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : " ") + name;
-  return text;
-}
-
 std::string_view token_at(const char* p, const char* end) {
   const char* q = p;
   while (q != end && !is_blank(*q)) ++q;

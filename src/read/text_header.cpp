@@ -138,6 +138,9 @@ void TextHeaderReader::read_step() {
 
 void TextHeaderReader::read_count(std::string_view label) {
   if (label.empty()) fail("ITEM: NUMBER OF does not say of what", {}, "NUMBER OF ATOMS or NUMBER OF ENTRIES");
+  // Later messages repeat the label, so that it has to be a text that one can read.
+  if (!is_name(label))
+    fail("a label of rows that cannot be meant", in_quotes(label), "ATOMS, ENTRIES or another short text");
   label_ = label;
   header_.kind = label_ == "ATOMS" ? RowKind::particles : RowKind::contacts;
   const std::string_view token = single_value("NUMBER OF " + label_);
@@ -196,8 +199,11 @@ void TextHeaderReader::read_bounds(std::size_t axis, bool tilted) {
 }
 
 void TextHeaderReader::read_columns(std::string_view text) {
-  for (std::string_view token = take_token(text); !token.empty(); token = take_token(text))
+  for (std::string_view token = take_token(text); !token.empty(); token = take_token(text)) {
+    if (!is_name(token))
+      fail("a column name that cannot be meant", in_quotes(token), "at most 200 printable characters");
     header_.columns.emplace_back(token);
+  }
   header_.columns_line = lines_.line_number();
   if (header_.columns.empty())
     fail("the columns have no names", in_quotes("ITEM: " + label_),

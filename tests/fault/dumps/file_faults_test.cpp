@@ -109,7 +109,7 @@ TEST_F(FileFaults, UnitsInConflictOrWithoutMeaning) {
       [&] {
         open_dumps(particles_in({lj, si}));
       },
-      {si + ":2", "units", "found si", "lj", lj + ":2"});
+      {si + ":2", "units", "found 'si'", "'lj'", lj + ":2"});
   InputSpec spec = particles_in({lj});
   spec.units = "si";
   spec.where["input.units"] = {"run.yaml", 5};

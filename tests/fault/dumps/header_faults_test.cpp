@@ -139,6 +139,17 @@ TEST_F(HeaderFaults, ColumnsWithoutNames) {
   refuses(p, 9, {"no names", "ITEM: ATOMS"});
 }
 
+TEST_F(HeaderFaults, NamesThatNobodyCanRead) {
+  Parts p;
+  p.columns = "ITEM: ATOMS id x y z c_\x01\n";
+  refuses(p, 9, {"column name", "'c_\\x01'"});
+  p.columns = "ITEM: ATOMS id x y z " + std::string(1000, 'c') + "\n";
+  refuses(p, 9, {"column name", "200 printable"});
+  p = {};
+  p.count = "ITEM: NUMBER OF AT\x01OMS\n1\n";
+  refuses(p, 3, {"label", "'AT\\x01OMS'"});
+}
+
 TEST_F(HeaderFaults, FilesThatEndWithinTheHeader) {
   const std::string text = Parts().text();
   // Cut after every line of the header, and within every line.

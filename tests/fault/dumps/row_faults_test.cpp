@@ -30,20 +30,16 @@ TEST_F(RowFaults, TheRowOfTheseTestsIsRightAsItStands) {
 
 TEST_F(RowFaults, ValuesThatAreNoFiniteNumbers) {
   for (const char* value : {"nan", "-nan", "inf", "-inf", "1.5e", "1,5", "abc", "0x1", "1e999", "--1", "1.5.5"}) {
-    refuses({good, "2 1 0.1 " + std::string(value) + " 0.3 1 2 3 0.5 2"}, 11,
-            {"column y", "'" + std::string(value) + "'", "finite"});
-    refuses({good, "2 1 0.1 0.2 0.3 1 2 " + std::string(value) + " 0.5 2"}, 11,
-            {"column vz", "'" + std::string(value) + "'"});
-    refuses({good, "2 1 0.1 0.2 0.3 1 2 3 0.5 " + std::string(value)}, 11,
-            {"column mass", "'" + std::string(value) + "'"});
+    refuses({good, cat({"2 1 0.1 ", value, " 0.3 1 2 3 0.5 2"})}, 11, {"column y", cat({"'", value, "'"}), "finite"});
+    refuses({good, cat({"2 1 0.1 0.2 0.3 1 2 ", value, " 0.5 2"})}, 11, {"column vz", cat({"'", value, "'"})});
+    refuses({good, cat({"2 1 0.1 0.2 0.3 1 2 3 0.5 ", value})}, 11, {"column mass", cat({"'", value, "'"})});
   }
 }
 
 TEST_F(RowFaults, IdsAndTypesThatAreNotWhole) {
   for (const char* value : {"1.5", "x", "nan", "1e2", "99999999999999999999"}) {
-    refuses({std::string(value) + " 1 0 0 0 0 0 0 1 1"}, 10,
-            {"column id", "'" + std::string(value) + "'", "whole number"});
-    refuses({"1 " + std::string(value) + " 0 0 0 0 0 0 1 1"}, 10, {"column type", "'" + std::string(value) + "'"});
+    refuses({cat({value, " 1 0 0 0 0 0 0 1 1"})}, 10, {"column id", cat({"'", value, "'"}), "whole number"});
+    refuses({cat({"1 ", value, " 0 0 0 0 0 0 1 1"})}, 10, {"column type", cat({"'", value, "'"})});
   }
   refuses({"1e+06 1 0 0 0 0 0 0 1 1"}, 10, {"column id", "dump_modify"});
   refuses({"0 1 0 0 0 0 0 0 1 1"}, 10, {"column id", "found 0", "from 1"});
@@ -69,8 +65,8 @@ TEST_F(RowFaults, DuplicateIds) {
 
 TEST_F(RowFaults, RadiusAndMassMustBePositive) {
   for (const char* value : {"0", "-1", "-0.0", "1e-999"}) {
-    refuses({good, "2 1 0 0 0 0 0 0 " + std::string(value) + " 1"}, 11, {"column radius", "above 0"});
-    refuses({good, "2 1 0 0 0 0 0 0 1 " + std::string(value)}, 11, {"column mass", "above 0"});
+    refuses({good, cat({"2 1 0 0 0 0 0 0 ", value, " 1"})}, 11, {"column radius", "above 0"});
+    refuses({good, cat({"2 1 0 0 0 0 0 0 1 ", value})}, 11, {"column mass", "above 0"});
   }
   refuses_text(particle_dump(0, "id x y z diameter", {"1 0 0 0 0"}), 10, {"column diameter", "found 0", "above 0"},
                Column::radius);

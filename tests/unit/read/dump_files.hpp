@@ -10,6 +10,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -92,6 +93,13 @@ inline std::string contact_dump(std::int64_t step, const std::string& columns, c
 /// Line of the column names, and of the first row, in the dumps above.
 inline constexpr int columns_line = 9;
 inline constexpr int first_row_line = 10;
+
+/// The texts one after another.
+inline std::string cat(std::initializer_list<std::string_view> texts) {
+  std::string all;
+  for (const std::string_view text : texts) all += text;
+  return all;
+}
 
 inline std::string printed(const char* format, double value) {
   std::array<char, 64> text{};

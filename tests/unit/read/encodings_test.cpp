@@ -15,9 +15,10 @@ std::vector<std::string> rows_of(std::size_t frame) {
   std::vector<std::string> rows;
   for (std::size_t i = 0; i < counts[frame]; ++i) {
     // Sparse ids, in no order of their own.
-    std::string row = std::to_string(1 + (i * 7919 + frame) % 100'003) + " " + std::to_string(1 + i % 3);
-    for (int c = 0; c < 9; ++c) row += " " + printed("%.9g", number(random) * (c < 3 ? 10 : 1) - (c > 2 ? 0.5 : 0));
-    row += " " + printed("%g", 0.1 + number(random)) + " " + printed("%g", 1 + number(random));
+    std::string row = cat({std::to_string(1 + (i * 7919 + frame) % 100'003), " ", std::to_string(1 + i % 3)});
+    for (int c = 0; c < 9; ++c)
+      row += cat({" ", printed("%.9g", number(random) * (c < 3 ? 10 : 1) - (c > 2 ? 0.5 : 0))});
+    row += cat({" ", printed("%g", 0.1 + number(random)) + " " + printed("%g", 1 + number(random))});
     rows.push_back(row);
   }
   return rows;
@@ -143,10 +144,10 @@ TEST_F(EncodingsTest, PositionEncodingsAgreeToTheirPrintedDigits) {
     std::string id = std::to_string(i), a = id, b = id, c = id, d = id;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double s = fraction(random), image = axis < 2 ? static_cast<double>(random() % 7) - 3 : 0;
-      a += " " + printed("%.9g", lo[axis] + s * length[axis]);
-      b += " " + printed("%.9g", s);
-      c += " " + printed("%.9g", lo[axis] + (s + image) * length[axis]);
-      d += " " + printed("%.9g", s + image);
+      a += cat({" ", printed("%.9g", lo[axis] + s * length[axis])});
+      b += cat({" ", printed("%.9g", s)});
+      c += cat({" ", printed("%.9g", lo[axis] + (s + image) * length[axis])});
+      d += cat({" ", printed("%.9g", s + image)});
     }
     x.push_back(a), xs.push_back(b), xu.push_back(c), xsu.push_back(d);
   }

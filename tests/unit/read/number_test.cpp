@@ -65,19 +65,5 @@ TEST(ParseWhole, RefusesFractionsExponentsAndOverflow) {
     EXPECT_FALSE(is_whole(token)) << token;
 }
 
-TEST(TakeToken, SplitsAtBlanksTabsAndCarriageReturns) {
-  std::string_view line = "  a\tb  c\r";
-  EXPECT_EQ(take_token(line), "a");
-  EXPECT_EQ(take_token(line), "b");
-  EXPECT_EQ(take_token(line), "c");
-  EXPECT_EQ(take_token(line), "");
-}
-
-TEST(InQuotes, ShowsUnprintableBytesAndCutsLongTexts) {
-  EXPECT_EQ(in_quotes("abc"), "'abc'");
-  EXPECT_EQ(in_quotes(std::string_view("a\0b\n\xff", 5)), "'a\\x00b\\x0a\\xff'");
-  EXPECT_EQ(in_quotes(std::string(100, 'x')), "'" + std::string(40, 'x') + "...'");
-}
-
 }  // namespace
 }  // namespace grainvdb
