@@ -70,6 +70,13 @@ openvdb::GridCPtrVec make_grids(const SparseField& field, const MetaMap& metadat
   return grids;
 }
 
+void clear_inactive(openvdb::GridBase& grid) {
+  grid.apply<openvdb::TypeList<openvdb::FloatGrid>>([](openvdb::FloatGrid& g) {
+    for (auto leaf = g.tree().beginLeaf(); leaf; ++leaf)
+      for (auto voxel = leaf->beginValueOff(); voxel; ++voxel) voxel.setValue(g.background());
+  });
+}
+
 openvdb::GridBase::ConstPtr make_mask_grid(const Mask& mask, const Lattice& lattice, const MetaMap& metadata) {
   const auto tree = std::make_shared<openvdb::Int32Tree>(static_cast<std::int32_t>(Reason::outside));
   const Topology& topology = *mask.topology();

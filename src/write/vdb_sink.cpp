@@ -97,6 +97,7 @@ void VdbSink::commit(const Provenance& provenance) {
   std::vector<std::unique_ptr<AtomicFile>> results;
   for (auto& draft : drafts_) {
     const openvdb::GridPtrVecPtr grids = read_vdb(*draft);
+    for (const auto& grid : *grids) clear_inactive(*grid);
     results.push_back(std::make_unique<AtomicFile>(draft->path()));
     write_vdb(*results.back(), {grids->begin(), grids->end()}, metadata);
     results.back()->finish();
