@@ -1,10 +1,11 @@
 #include "splat/sample.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <map>
-#include <random>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -31,10 +32,12 @@ LeafBuffers buffers_of(const std::vector<Coord>& voxels, int channels,
   return b;
 }
 
-// A number in (0, 1) that belongs to a voxel and a channel.
+// A number from 0.1 to 0.9 that belongs to a voxel and a channel.
 double noise(const Coord& v, int channel) {
-  std::mt19937 random(static_cast<unsigned>(v.x * 73856093 ^ v.y * 19349663 ^ v.z * 83492791 ^ channel * 7919));
-  return std::uniform_real_distribution<double>(0.1, 0.9)(random);
+  std::uint64_t hash = 0;
+  for (const int key : {v.x, v.y, v.z, channel})
+    hash = (hash ^ static_cast<std::uint32_t>(key)) * 0x9e3779b97f4a7c15U, hash ^= hash >> 29;
+  return 0.1 + 0.8 * static_cast<double>(hash >> 11) / 9007199254740992.0;  // 2⁵³
 }
 
 // The interpolation written out with a dense map of the sums over the homogeneous axes.
