@@ -30,11 +30,23 @@ Extent3 ChunkGrid::from_first(const Coord& c) const {
   return v;
 }
 
+std::size_t ChunkGrid::places_in(const OccupiedChunk& chunk, const Coord& leaf_origin, const LeafMask& mask,
+                                 std::array<Place, leaf_size>& places) const {
+  std::size_t n = 0;
+  mask.for_each([&](int offset) {
+    Extent3 v = from_first(voxel_at(leaf_origin, offset));
+    for (std::size_t a = 0; a < 3; ++a) v[a] -= chunk.start[a];  // wraps to something large below the start
+    if (v[0] < chunk_[0] && v[1] < chunk_[1] && v[2] < chunk_[2])
+      places[n++] = {static_cast<std::size_t>(offset), (v[2] * chunk_[1] + v[1]) * chunk_[0] + v[0]};
+  });
+  return n;
+}
+
 std::vector<OccupiedChunk> ChunkGrid::occupied(const Topology& topology) const {
   // Per leaf, the chunks that the bounds of its active voxels touch: eight at most unless chunks are narrower than
   // leaves.
-  using Place = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::size_t>;  // z, y, x of the chunk, leaf
-  std::vector<Place> places;
+  using Touch = std::tuple<std::uint64_t, std::uint64_t, std::uint64_t, std::size_t>;  // z, y, x of the chunk, leaf
+  std::vector<Touch> touches;
   for (std::size_t leaf = 0; leaf < topology.leaf_count(); ++leaf) {
     Extent3 low, high{};
     low.fill(std::numeric_limits<std::uint64_t>::max());
@@ -47,12 +59,12 @@ std::vector<OccupiedChunk> ChunkGrid::occupied(const Topology& topology) const {
     });
     for (std::uint64_t z = low[2]; z <= high[2]; ++z)
       for (std::uint64_t y = low[1]; y <= high[1]; ++y)
-        for (std::uint64_t x = low[0]; x <= high[0]; ++x) places.emplace_back(z, y, x, leaf);
+        for (std::uint64_t x = low[0]; x <= high[0]; ++x) touches.emplace_back(z, y, x, leaf);
   }
-  std::sort(places.begin(), places.end());
+  std::sort(touches.begin(), touches.end());
 
   std::vector<OccupiedChunk> chunks;
-  for (const auto& [z, y, x, leaf] : places) {
+  for (const auto& [z, y, x, leaf] : touches) {
     const Extent3 start{x * chunk_[0], y * chunk_[1], z * chunk_[2]};
     if (chunks.empty() || chunks.back().start != start) chunks.push_back({start, {}});
     chunks.back().leaves.push_back(leaf);

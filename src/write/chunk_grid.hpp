@@ -39,8 +39,14 @@ class ChunkGrid {
               const Values& values, std::vector<T>& out) const;
 
  private:
-  /// Whether voxel offset v from the chunk's start lies in the chunk (v may have wrapped below zero).
-  bool inside(const Extent3& v) const { return v[0] < chunk_[0] && v[1] < chunk_[1] && v[2] < chunk_[2]; }
+  /// An active voxel of a leaf that lies in a chunk: its offset in the leaf, and its number in the chunk.
+  struct Place {
+    std::size_t offset;
+    std::size_t voxel;
+  };
+  /// Lists the places of a leaf and returns how many there are.
+  std::size_t places_in(const OccupiedChunk& chunk, const Coord& leaf_origin, const LeafMask& mask,
+                        std::array<Place, leaf_size>& places) const;
   Extent3 from_first(const Coord& c) const;
 
   Coord first_;
@@ -52,14 +58,12 @@ template <class T, class Values>
 void ChunkGrid::gather(const OccupiedChunk& chunk, const Topology& topology, std::size_t components, T background,
                        const Values& values, std::vector<T>& out) const {
   out.assign(chunk_[0] * chunk_[1] * chunk_[2] * components, background);
+  std::array<Place, leaf_size> places;
   for (const std::size_t leaf : chunk.leaves) {
+    const std::size_t n = places_in(chunk, topology.origin(leaf), topology.mask(leaf), places);
     for (std::size_t component = 0; component < components; ++component) {
       const T* const from = values(leaf, component);
-      topology.mask(leaf).for_each([&](int offset) {
-        Extent3 v = from_first(voxel_at(topology.origin(leaf), offset));
-        for (std::size_t axis = 0; axis < 3; ++axis) v[axis] -= chunk.start[axis];
-        if (inside(v)) out[((v[2] * chunk_[1] + v[1]) * chunk_[0] + v[0]) * components + component] = from[offset];
-      });
+      for (std::size_t i = 0; i < n; ++i) out[places[i].voxel * components + component] = from[places[i].offset];
     }
   }
 }
