@@ -15,14 +15,35 @@ std::string meaning(const std::string& name) {
   return it == reasons().end() ? std::string() : " (" + std::string(it->meaning) + ')';
 }
 
+std::string counted(std::size_t n, const char* noun) {
+  return std::to_string(n) + ' ' + noun + (n == 1 ? "" : "s");
+}
+
+// The first file with the ending; empty when there is none.
+std::string file_ending_in(const std::vector<std::string>& files, const char* ending) {
+  const auto it = std::find_if(files.begin(), files.end(), [&](const std::string& f) { return f.ends_with(ending); });
+  return it == files.end() ? std::string() : *it;
+}
+
+std::string files_written(const std::vector<std::string>& files) {
+  constexpr std::size_t shown = 4;  // a series may have one file per output time
+  std::string text;
+  for (std::size_t i = 0; i < std::min(shown, files.size()); ++i) text += "wrote " + files[i] + '\n';
+  if (files.size() > shown) text += "and " + counted(files.size() - shown, "more file") + " beside them\n";
+  const std::string hdf5 = file_ending_in(files, ".hdf"), series = file_ending_in(files, ".xmf2");
+  if (hdf5.empty()) return text;
+  return text + "look at it:\n  paraview " + (series.empty() ? hdf5 : series) +
+         "\n  python3 -c \"import h5py; print(list(h5py.File('" + hdf5 + "')['VTKHDF/PointData']))\"\n";
+}
+
 }  // namespace
 
 std::string describe(const RunReport& report) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text << std::fixed << std::setprecision(2);
-  text << report.frames << (report.frames == 1 ? " frame, " : " frames, ") << report.active_voxels << " active voxels, "
-       << report.channels << " channels splatted per frame\n";
+  text << counted(report.frames, "frame") << ", " << counted(report.active_voxels, "active voxel") << ", "
+       << counted(report.channels, "channel") << " splatted per frame\n";
   double total = 0;
   text << "time:";
   for (const auto& [step, seconds] : report.seconds) {
@@ -30,15 +51,11 @@ std::string describe(const RunReport& report) {
     total += seconds;
   }
   text << " in all " << total << " s\n";
-  text << "read: " << report.read.files_opened.size() << " files, " << report.read.rows_read << " rows, "
-       << static_cast<double>(report.read.bytes_read) / 1e6 << " MB\n";
+  text << "read: " << counted(report.read.files_opened.size(), "file") << ", " << counted(report.read.rows_read, "row")
+       << ", " << static_cast<double>(report.read.bytes_read) / 1e6 << " MB\n";
   for (const auto& [reason, count] : report.masked)
-    text << "masked: " << count << " voxels " << reason << meaning(reason) << '\n';
-  for (const std::string& file : report.files) text << "wrote " << file << '\n';
-  for (const std::string& file : report.files)
-    if (file.ends_with(".hdf"))
-      text << "look at it:\n  paraview " << file << "\n  python3 -c \"import h5py; print(list(h5py.File('" << file
-           << "')['VTKHDF/PointData']))\"\n";
+    text << "mask: " << counted(count, "voxel") << ' ' << reason << meaning(reason) << '\n';
+  text << files_written(report.files);
   return text.str();
 }
 

@@ -102,7 +102,7 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
   int components = 0;
   for (const Stage* stage : plan.stages) {
     components += stage->components;
-    text += "  " + stage->name + " [" + unit_symbol(pipeline, stage->dimension) + "] = " + stage->equation +
+    text += "  " + stage->name + " [" + unit_symbol(pipeline, stage->dimension) + "]: " + stage->equation +
             (is_written(pipeline, *stage) ? "" : " (not written)") + '\n';
   }
 
@@ -110,7 +110,7 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
   for (const MomentPtr& moment : plan.means) channels += moment->channels;
   const int bytes = 8 * channels + 4 * components;
   text += "\ntime means kept: " + joined(names_of(plan.means), "none") + '\n';
-  text += "memory per active voxel: " + std::to_string(bytes) + " bytes (" + std::to_string(channels) +
+  text += "memory per active voxel: at most " + std::to_string(bytes) + " bytes (" + std::to_string(channels) +
           " mean channels of 8, " + std::to_string(components) + " field components of 4)\n";
   text += "written: " + joined(pipeline.fields, "nothing") + " as " + joined(pipeline.formats, "nothing") + '\n';
   text += "not read: " + joined(columns_not_read(plan), "nothing is left out") + '\n';

@@ -65,6 +65,16 @@ TEST(Run, TheResultDoesNotDependOnTheThreads) {
   EXPECT_TRUE(one == bytes("2"));
 }
 
+TEST(Run, ASeriesSaysHowToOpenIt) {
+  const Folder folder;
+  write_example(folder);
+  const CommandResult result =
+      run_command({"run", "p.yaml", "--set", "average.window=1", "--set", "output.formats=[hdf5, vdb]"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("paraview output/fields.xmf2"), HasSubstr("1 more file beside them")));
+  EXPECT_EQ(folder.names_in("output").size(), 5U);  // the fields, the sidecar and one VDB file per output time
+}
+
 TEST(Run, QuietPrintsNothing) {
   const Folder folder;
   write_example(folder);
@@ -105,7 +115,7 @@ TEST(Run, UndefinedVoxelsAreCountedByReason) {
   const CommandResult result = run_command(
       {"run", "p.yaml", "--set", "output.fields=[mu]", "--set", "stages.pressure.pressure_min=1e9"}, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("masked: 512 voxels low_pressure (P <= P_min"));
+  EXPECT_THAT(result.out, HasSubstr("mask: 512 voxels low_pressure (P <= P_min"));
 }
 
 }  // namespace
