@@ -18,18 +18,24 @@ constexpr const char* footer = R"(Examples:
 Editors check pipeline files against the schema when it is named in their first line:
   # yaml-language-server: $schema=grainvdb.schema.json)";
 
+std::string type_text(const Json& value);
+
+std::string joined(const Json& parts, const char* between, std::string (*text)(const Json&)) {
+  std::string result;
+  for (const Json& part : parts) result += (result.empty() ? "" : between) + text(part);
+  return result;
+}
+
 // What a value may be, from its part of the schema.
 std::string type_text(const Json& value) {
-  if (value.contains("anyOf")) {
-    std::string text;
-    for (const Json& one : value["anyOf"]) text += (text.empty() ? "" : " or ") + type_text(one);
-    return text;
-  }
   if (value.contains("const")) return value["const"].get<std::string>();
-  if (value.contains("enum")) {
-    std::string text;
-    for (const Json& one : value["enum"]) text += (text.empty() ? "" : " | ") + one.get<std::string>();
-    return text;
+  if (value.contains("enum"))
+    return joined(value["enum"], " | ", [](const Json& name) { return name.get<std::string>(); });
+  if (value.contains("anyOf")) {
+    const Json& first = value["anyOf"][0];
+    // Where a list is wanted, one text may stand for a list of one.
+    if (first.contains("items") && first["items"] == value["anyOf"][1]) return type_text(first);
+    return joined(value["anyOf"], " or ", &type_text);
   }
   const auto type = value.value("type", std::string());
   return type == "array" ? "list of " + type_text(value["items"]) : type;
