@@ -71,7 +71,7 @@ TEST_P(ContactSplat, TopologyIsWhereTheLineIntegralIsPositive) {
   const LeafBuffers sums =
       splat_contacts(lattice, kernel, branches, std::vector<double>(branches.size(), 1.0), 1, exact);
   std::size_t active = 0;
-  for (const Coord& voxel : scene.voxels(1.5 * scene.cutoff + 2)) {
+  for (const Coord& voxel : scene.voxels(1.5 * scene.cutoff + 2 * scene.voxel)) {
     bool inside = false, at_rim = false;
     for (std::size_t b = 0; b < branches.size(); ++b) {
       const Vec3 arm = row(branches.arm, b);
@@ -96,7 +96,7 @@ TEST_P(ContactSplat, SumsEqualTheBruteForce) {
   const LeafBuffers sums = splat_contacts(lattice, kernel, branches, q, channels, exact);
   const double shift = position_error(branches.start);
   const int parts = 16;
-  for (const Coord& voxel : scene.voxels(1.5 * scene.cutoff + 2)) {
+  for (const Coord& voxel : scene.voxels(1.5 * scene.cutoff + 2 * scene.voxel)) {
     double sum[2] = {}, terms[2] = {}, reached[2] = {};
     for (std::size_t b = 0; b < branches.size(); ++b) {
       const Vec3 arm = row(branches.arm, b);
@@ -133,7 +133,7 @@ TEST_P(ContactSplat, EveryMethodIsTheSumOfItsLineIntegrals) {
   const double shift = position_error(branches.start);
   for (int n : {0, 1, 2, 3, 8}) {
     const LeafBuffers sums = splat_contacts(lattice, kernel, branches, q, 1, LineIntegral{n});
-    for (const Coord& voxel : scene.voxels(1.5 * scene.cutoff + 2)) {
+    for (const Coord& voxel : scene.voxels(1.5 * scene.cutoff + 2 * scene.voxel)) {
       double sum = 0, terms = 0, reached = 0;
       for (std::size_t b = 0; b < branches.size(); ++b) {
         const Vec3 arm = row(branches.arm, b);

@@ -25,7 +25,7 @@ class ParticleSplat : public testing::TestWithParam<Scene> {
 
 TEST_P(ParticleSplat, TopologyIsWhereTheKernelIsPositive) {
   std::size_t active = 0;
-  for (const Coord& voxel : scene.voxels(scene.cutoff + 2)) {
+  for (const Coord& voxel : scene.voxels(scene.cutoff + 2 * scene.voxel)) {
     bool inside = false, at_rim = false;
     for (std::size_t p = 0; p < count; ++p) {
       const double r = norm(scene.shortest(lattice.centre(voxel), row(x, p)));
@@ -45,7 +45,7 @@ TEST_P(ParticleSplat, SumsEqualTheBruteForce) {
   const auto q = random_values(count * channels, 12);
   const LeafBuffers sums = splat_particles(lattice, kernel, buckets, topology, q, channels);
   const double shift = position_error(x);
-  for (const Coord& voxel : scene.voxels(scene.cutoff + 2))
+  for (const Coord& voxel : scene.voxels(scene.cutoff + 2 * scene.voxel))
     for (int c = 0; c < channels; ++c) {
       double sum = 0, terms = 0, reached = 0;
       for (std::size_t p = 0; p < count; ++p) {
@@ -70,7 +70,7 @@ TEST_P(ParticleSplat, GradientsEqualTheBruteForce) {
   ASSERT_EQ(sums.channels(), 6);
   const double c = scene.cutoff;
   const double shift = position_error(x);
-  for (const Coord& voxel : scene.voxels(c + 2))
+  for (const Coord& voxel : scene.voxels(c + 2 * scene.voxel))
     for (int v = 0; v < values; ++v)
       for (int j = 0; j < 3; ++j) {
         double sum = 0, terms = 0, reached = 0;
