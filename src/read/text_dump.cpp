@@ -167,7 +167,7 @@ void TextDump::check_end_of_rows() {
 bool TextDump::skip_rows() {
   std::string_view line;
   for (std::size_t row = 0; row < header_.rows; ++row) {
-    if (!lines_.next(line) || !lines_.complete()) return false;
+    if (!lines_.next(line)) return false;
     if (line.starts_with(item_mark)) {
       lines_.unread();
       return false;

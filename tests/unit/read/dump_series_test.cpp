@@ -127,6 +127,10 @@ TEST_F(DumpSeriesTest, ADirectoryMayHoldContactsAndOtherFilesToo) {
   spec.contacts.files = {files_.directory()};
   const auto source = open_dumps(spec);
   EXPECT_THAT(steps(*source), ElementsAre(0));
+  const auto count = [](const auto& files, const std::string& path) {
+    return std::count_if(files.begin(), files.end(), [&](const auto& file) { return file.first == path; });
+  };
+  EXPECT_EQ(count(source->files(), dump), 1);
   EXPECT_EQ(source->read(0, Column::contacts).contacts.size(), 1U);
   EXPECT_THAT(source->files(), UnorderedElementsAre(std::pair(dump, std::uintmax_t{frame(0).size()}),
                                                     std::pair(contact, std::uintmax_t{contacts(0).size()})));
@@ -170,6 +174,14 @@ TEST_F(DumpSeriesTest, ASmallSecondFrameThatTheIndexMissesIsFoundWhenRead) {
   EXPECT_EQ(source->read(0, {}).particles.size(), 5000U);
   ASSERT_EQ(source->frames().size(), 2U);
   expect_error<InputError>([&] { source->read(1, {}); }, {path + ":5010", "another frame"});
+}
+
+TEST_F(DumpSeriesTest, ARowTooManyThatTheIndexMissesIsFoundWhenRead) {
+  files_.write("dump0", frame(0, 5000));
+  const std::string path = files_.write("dump1", frame(1, 5000) + "100000 1 2 3 0.5\n");
+  const auto source = open_dumps(particles_in({files_.path("dump*")}));
+  ASSERT_EQ(source->frames().size(), 2U);
+  expect_error<InputError>([&] { source->read(1, {}); }, {path + ":5010", "after the last row", "5000 ATOMS"});
 }
 
 TEST_F(DumpSeriesTest, FramesOfOneFileReadInAnyOrderSeekDirectly) {

@@ -75,6 +75,8 @@ TEST_F(LineReaderTest, LinesOfEveryLengthAcrossBufferBoundaries) {
   EXPECT_FALSE(lines.next(line));
   for (const std::size_t i : {std::size_t{0}, std::size_t{19'999}, std::size_t{10'001}, std::size_t{10'000}}) {
     lines.seek(starts[i]);
+    EXPECT_EQ(lines.position().offset, starts[i].offset);
+    EXPECT_EQ(lines.position().line, starts[i].line);
     ASSERT_TRUE(lines.next(line));
     EXPECT_EQ(line, expected[i]);
     EXPECT_EQ(lines.line_number(), i + 1);
