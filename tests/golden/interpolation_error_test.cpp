@@ -83,6 +83,9 @@ class InterpolationError : public ::testing::Test {
     return result;
   }
 
+  void fluctuations_about_the_exact_mean();
+  void kinetic_stress_about_the_exact_mean();
+  void central_differences_against_the_kernels_gradient();
   void check_fluctuation(const Columns3& q, const std::string& mean_field, const std::string& field,
                          const std::string& column);
 
@@ -123,13 +126,13 @@ void InterpolationError::check_fluctuation(const Columns3& q, const std::string&
     std::printf("%s: %.3g of the value, %.3g of the bound, %zu rows\n", column.c_str(), worst, worst_of_bound, checked);
 }
 
-TEST_F(InterpolationError, FluctuationsAboutTheExactMean) {
+void InterpolationError::fluctuations_about_the_exact_mean() {
   check_fluctuation(s.frame.particles.velocity, "velocity", "temperature", "T_u_exact");
   check_fluctuation(s.frame.particles.angular_velocity, "angular_velocity", "rotational_fluctuation", "domega2_exact");
 }
 
 // Kinetic stress: |Δ(u'_i u'_j)| ≤ |u'_i| b_j + |u'_j| b_i + b_i b_j per particle.
-TEST_F(InterpolationError, KineticStressAboutTheExactMean) {
+void InterpolationError::kinetic_stress_about_the_exact_mean() {
   const Particles& p = s.frame.particles;
   const std::vector<Vec3> bound = interpolation_bound("velocity");
   const std::vector<Vec3> mean = exact(p.velocity);
@@ -186,7 +189,7 @@ Vec3 gradient_at(const Frame& f, double cutoff, const Vec3& x, int axis) {
 // table's, by h² u'''/6 and smaller terms. That mean is formed here from the kernel's gradient at 16 Gauss-Legendre
 // points: to 2e-3 of its variation (measured: below 1e-3; u''' jumps at the rims of particles) and the rounding of u to
 // float.
-TEST_F(InterpolationError, CentralDifferencesAgainstTheKernelsGradient) {
+void InterpolationError::central_differences_against_the_kernels_gradient() {
   const Quadrature rule = gauss_legendre(16);
   const VoxelBox& box = s.reference->box;
   const double h = s.pipeline.voxel;
@@ -233,6 +236,12 @@ TEST_F(InterpolationError, CentralDifferencesAgainstTheKernelsGradient) {
   if (std::getenv("GRAINVDB_AGREEMENT") != nullptr)
     std::printf("central gradient: off by %.3g 1/s at most, the largest is %.3g, %zu values\n", worst, largest,
                 checked);
+}
+
+TEST_F(InterpolationError, IsWhatTheVoxelSizeExplains) {
+  fluctuations_about_the_exact_mean();
+  kinetic_stress_about_the_exact_mean();
+  central_differences_against_the_kernels_gradient();
 }
 
 }  // namespace
