@@ -22,7 +22,7 @@ void redirect(int descriptor, const std::string& path) {
 }  // namespace
 
 CommandResult run_command(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                          const std::string& out_path) {
+                          const std::string& out_path, const std::function<void(pid_t)>& meanwhile) {
   const Folder captured;
   const std::string out = out_path.empty() ? (captured / "out").string() : out_path;
   const std::string err = (captured / "err").string();
@@ -41,6 +41,7 @@ CommandResult run_command(const std::vector<std::string>& arguments, const std::
     execv(argv[0], argv.data());
     _exit(97);
   }
+  if (meanwhile) meanwhile(child);
   int status = 0;
   if (waitpid(child, &status, 0) != child) throw std::runtime_error("cannot wait for the command");
   CommandResult result;

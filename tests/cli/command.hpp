@@ -1,8 +1,11 @@
 #pragma once
 /// Runs the built command and captures what it prints.
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include <sys/types.h>
 
 namespace grainvdb::test {
 
@@ -12,9 +15,10 @@ struct CommandResult {
   std::string err;
 };
 
-/// Runs `grainvdb arguments…` in a folder; its standard output goes to `out_path` where that is given.
+/// Runs `grainvdb arguments…` in a folder. `meanwhile` is called with the process while it runs. Its standard output
+/// goes to `out_path` where that is given.
 CommandResult run_command(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                          const std::string& out_path = {});
+                          const std::string& out_path = {}, const std::function<void(pid_t)>& meanwhile = {});
 
 /// A new folder that is removed, with all that is in it, when the object goes.
 class Folder {
