@@ -21,14 +21,6 @@ namespace {
 
 const char axes[] = "xyz";
 
-class ReferenceNumbers : public ::testing::TestWithParam<std::int64_t> {
- protected:
-  void same_definitions_agree_to_rounding();
-  void twenty_four_points_are_nearly_exact();
-  void time_mean_of_one_frame_is_the_frame();
-  const Snapshot s{GetParam(), "kernel"};
-};
-
 /// Σ of the branch terms by the 24-point rule of the table.
 Sums contact_by_24_points(const Snapshot& s) {
   const Branches b = branches_of(s.frame);
@@ -39,11 +31,19 @@ Sums contact_by_24_points(const Snapshot& s) {
   return branch_sums(s.reference->box, s.pipeline.cutoff, b, q, 9, 24);
 }
 
+class ReferenceNumbers : public ::testing::TestWithParam<std::int64_t> {
+ protected:
+  void same_definitions_agree_to_rounding();
+  void twenty_four_points_are_nearly_exact();
+  void time_mean_of_one_frame_is_the_frame();
+  const Snapshot s{GetParam(), "kernel"};
+  const Sums contact = contact_by_24_points(s);
+};
+
 // The table's kernel is written as the expanded polynomial 1 - 6q² + 8q³ - 3q⁴, which loses up to 2e-15 W(0) near the
 // rim: relative to φ that is `weights`, and as much of every sum of terms. Add half an ulp of float for the program's
 // value, ten digits for the table's, and rounding in double.
 void ReferenceNumbers::same_definitions_agree_to_rounding() {
-  const Sums contact = contact_by_24_points(s);
   const double peak = lucy(0, s.pipeline.cutoff);
   const double largest = 4.0 / 3 * std::numbers::pi * std::pow(0.48e-3, 3);
   std::map<std::string, double> worst;
@@ -93,7 +93,6 @@ void ReferenceNumbers::same_definitions_agree_to_rounding() {
 // Half branches are shorter than c/4, and the kernel is smooth along them but for its centre and its rim, so 24 points
 // come within 1e-7 of the sum of the terms wherever there is more than the rim of one branch.
 void ReferenceNumbers::twenty_four_points_are_nearly_exact() {
-  const Sums contact = contact_by_24_points(s);
   const ReferenceField& exact = s.reference->fields.at("contact_stress");
   double largest = 0;
   for (double m : exact.magnitude) largest = std::max(largest, m);

@@ -118,7 +118,8 @@ Sums& Sums::operator+=(const Sums& o) {
 double lucy(double r, double cutoff) {
   const double q = r / cutoff;
   if (q >= 1) return 0;
-  return 105 / (16 * std::numbers::pi * std::pow(cutoff, 3)) * std::pow(1 - q, 3) * (1 + 3 * q);
+  const double p = 1 - q;
+  return 105 / (16 * std::numbers::pi * cutoff * cutoff * cutoff) * p * p * p * (1 + 3 * q);
 }
 
 Quadrature gauss_legendre(int n) {
@@ -201,8 +202,10 @@ Sums particle_sums(const VoxelBox& box, double cutoff, const Particles& p, const
 }
 
 Sums gradient_sums(const VoxelBox& box, double cutoff, const Particles& p, const std::vector<double>& q, int values) {
+  const double scale = -1260 / (16 * std::numbers::pi * std::pow(cutoff, 5));
   return sum_over_particles(box, cutoff, p, q, values, 3, [&](const Vec3& d, double r) {
-    const double factor = -1260 / (16 * std::numbers::pi * std::pow(cutoff, 5)) * std::pow(1 - r / cutoff, 2);
+    const double rim = 1 - r / cutoff;
+    const double factor = scale * rim * rim;
     return std::array{factor * d[0], factor * d[1], factor * d[2]};
   });
 }
