@@ -131,6 +131,18 @@ Sweep make_sweep(const MomentOrder& order, std::size_t number) {
   return sweep;
 }
 
+// The voxel centre nearest to a particle can be half a voxel diagonal away: a narrower kernel can miss all centres, and
+// the particle would be lost.
+void check_reach(const Pipeline& pipeline) {
+  const double least = 0.5 * std::numbers::sqrt3 * pipeline.voxel;
+  if (pipeline.cutoff < least)
+    throw ConfigError(
+        {pipeline.location("kernel.cutoff"), "the kernel is so narrow that particles fall between the voxel centres",
+         "kernel.cutoff " + print_number(pipeline.cutoff) + " at lattice.voxel " + print_number(pipeline.voxel),
+         "a cutoff of at least sqrt(3)/2 voxels, " + print_number(least) + "; 3 voxels and more give accurate fields",
+         "Use smaller voxels or a wider kernel."});
+}
+
 // Sampling at a particle reads the eight voxels around it, the farthest of them up to √3 h away; all must be within
 // its kernel.
 void check_cutoff(const Pipeline& pipeline, const Stage& stage, const Moment& moment) {
@@ -150,6 +162,7 @@ void check_cutoff(const Pipeline& pipeline, const Stage& stage, const Moment& mo
 }  // namespace
 
 Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
+  check_reach(pipeline);
   const StageOrder stages(pipeline, registry);
   Plan plan;
   plan.stages = stages.ordered();

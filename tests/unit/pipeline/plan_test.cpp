@@ -188,6 +188,18 @@ TEST(Plan, InterpolationNeedsAWideKernel) {
   EXPECT_NO_THROW(make_plan(p, registry));
 }
 
+TEST(Plan, NoParticleMayFallBetweenTheVoxels) {
+  const StageRegistry registry = test::example_registry();
+  Pipeline p = wanting(registry, {"phi"});
+  p.voxel = 2;
+  p.cutoff = 1.73;  // half a voxel diagonal is 1.73205
+  EXPECT_THAT(refusal(p, registry),
+              testing::AllOf(testing::StartsWith("p.yaml:7: the kernel is so narrow"),
+                             HasSubstr("kernel.cutoff 1.73 at lattice.voxel 2"), HasSubstr("1.732")));
+  p.cutoff = 1.7321;
+  EXPECT_NO_THROW(make_plan(p, registry));
+}
+
 TEST(Plan, DifferentMomentsOfOneNameAreAProgrammingError) {
   StageRegistry registry;
   registry.add(example_stage("a", {}, {example_moment({.name = "m", .channels = 1})}));
