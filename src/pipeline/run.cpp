@@ -15,7 +15,9 @@
 namespace grainvdb {
 namespace {
 
-/// The voxels that a box and the kernel around it can reach: fixed for all output times of a series.
+/// The voxels that the kernels can reach from a box: fixed for all output times of a series. Particles leave an open
+/// box until its bounds are next updated or they are removed: there is room for one cutoff beyond it, then for the
+/// kernel.
 Topology::Bounds reach_of_boxes(const Lattice& lattice, const FrameSource& source, std::span<const std::size_t> wanted,
                                 double cutoff) {
   Coord first;
@@ -35,8 +37,8 @@ Topology::Bounds reach_of_boxes(const Lattice& lattice, const FrameSource& sourc
       lo = std::min(lo, source.frames()[k].box.lo[axis]);
       hi = std::max(hi, source.frames()[k].box.hi[axis]);
     }
-    *firsts[a] = static_cast<std::int32_t>(std::floor(lattice.to_index(a, lo - cutoff)));
-    *lasts[a] = static_cast<std::int32_t>(std::ceil(lattice.to_index(a, hi + cutoff)));
+    *firsts[a] = static_cast<std::int32_t>(std::floor(lattice.to_index(a, lo - 2 * cutoff)));
+    *lasts[a] = static_cast<std::int32_t>(std::ceil(lattice.to_index(a, hi + 2 * cutoff)));
   }
   return {first, last};
 }

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "grainvdb/error.hpp"
 #include "support/compare.hpp"
 #include "support/reference.hpp"
 #include "support/run_in_memory.hpp"
@@ -95,6 +96,54 @@ TEST(Windows, SeriesHasOneBox) {
     }
   }
   EXPECT_TRUE(r.record.committed);
+}
+
+// Grains leave an open box between two updates of its bounds: the box of a series has room for them.
+TEST(Windows, SeriesHasRoomForGrainsJustOutsideAnOpenBox) {
+  Scene scene = walled_scene();
+  scene.voxel = 0.25;
+  for (std::size_t k = 0; k < scene.frames.size(); ++k) {
+    Frame& f = scene.frames[k];
+    f.contacts = {};
+    f.particles.position[2].back() = k == 0 ? f.box.hi[2] + 0.9 * scene.cutoff : f.box.lo[2] - 0.9 * scene.cutoff;
+    f.particles.type.back() = 1;
+  }
+  Pipeline p = scene.pipeline({"phi"});
+  p.window = 1;
+  const Result r = run(p, scene.frames);
+  for (const Written& w : r.record.times) {
+    const auto bounds = w.field("phi").topology->bounds().value();
+    EXPECT_LE(r.record.layouts[0].first.z, bounds.first.z);
+    EXPECT_GE(r.record.layouts[0].last.z, bounds.last.z);
+  }
+}
+
+// A frame in which nothing is selected counts in the mean; a run without any material is refused.
+TEST(Windows, FramesWithoutMaterial) {
+  const Scene scene = walled_scene();
+  Frame empty = scene.frames[1];
+  for (int& type : empty.particles.type) type = 2;
+  empty.contacts = {};
+  const Pipeline p = scene.pipeline(fields);
+  const std::vector<Frame> frames{scene.frames[0], empty};
+  expect_mean_over(run(p, frames).only(), frames, p);
+  EXPECT_THROW(run(p, {empty}), InputError);
+}
+
+// No particle at all is a valid snapshot.
+TEST(Windows, FramesWithoutParticles) {
+  const Scene scene = walled_scene();
+  Frame empty = scene.frames[1];
+  empty.particles = {};
+  empty.contacts = {};
+  const Pipeline p = scene.pipeline({"phi", "temperature", "kinetic_stress", "contact_stress"});
+  const Result r = run(p, {scene.frames[0], empty});
+  const Result alone = run(p, {scene.frames[0]});
+  r.only().field("phi").for_each_active([&](const Coord& c) {
+    EXPECT_FLOAT_EQ(2 * r.only().field("phi").at(c), alone.only().field("phi").at(c));
+    EXPECT_FLOAT_EQ(2 * r.only().field("contact_stress").at(c, 8), alone.only().field("contact_stress").at(c, 8));
+  });
+  EXPECT_THROW(run(p, {empty}), InputError);
 }
 
 // Material by id and by a region of the wrapped position; contacts count whatever is selected.
