@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <tbb/parallel_for.h>
+#include "base/parallel.hpp"
 
 namespace grainvdb {
 
@@ -46,7 +46,7 @@ void MomentSums::add(const Moment& moment, const LeafBuffers& part, int channel)
   const Topology& topology = *part.topology();
   std::vector<Leaf*> targets(topology.leaf_count());
   for (std::size_t l = 0; l < targets.size(); ++l) targets[l] = &leaf(topology.origin(l));
-  tbb::parallel_for(std::size_t{0}, targets.size(), [&](std::size_t l) {
+  parallel_for(targets.size(), [&](std::size_t l) {
     Leaf& to = *targets[l];
     to.reached |= topology.mask(l);
     for (int c = 0; c < moment.channels; ++c) {
@@ -94,7 +94,7 @@ MomentMeans MomentSums::means(const std::vector<MomentPtr>& subset, std::size_t 
   LeafBuffers values(topology, channels);
   LeafBuffers counts(topology, 1);
   const double n = static_cast<double>(frames);
-  tbb::parallel_for(std::size_t{0}, topology->leaf_count(), [&](std::size_t l) {
+  parallel_for(topology->leaf_count(), [&](std::size_t l) {
     const Leaf& from = *leaves_.at(topology->origin(l));
     for (const auto& [source, target] : copies) {
       const double* sum = from.sums.data() + source * leaf_size;

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.hpp"
 #include "bin/buckets.hpp"
 #include "grainvdb/leaf_buffers.hpp"
 
@@ -86,7 +86,7 @@ std::shared_ptr<const Topology> reached_voxels(const Lattice& lattice, const Buc
                                                const Visit& visit) {
   std::vector<Coord> leaves = leaves_in_reach(lattice, buckets, reach);
   std::vector<LeafMask> masks(leaves.size());
-  tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t l) {
+  parallel_for(leaves.size(), [&](std::size_t l) {
     const LeafWindow window(lattice, leaves[l]);
     const LeafMask all = window.mask();
     LeafMask& mask = masks[l];
@@ -110,7 +110,7 @@ LeafBuffers gather(const Lattice& lattice, const Buckets& buckets, double reach,
   // Sums are kept [offset][channel] while they grow: the channels of a voxel lie side by side, where [channel][offset]
   // would put them 4096 bytes apart, into the same cache set.
   tbb::enumerable_thread_specific<std::vector<double>> scratch(leaf_size * width);
-  tbb::parallel_for(std::size_t{0}, leaves.leaf_count(), [&](std::size_t l) {
+  parallel_for(leaves.leaf_count(), [&](std::size_t l) {
     std::vector<double>& sums = scratch.local();
     std::fill(sums.begin(), sums.end(), 0.0);
     const LeafWindow window(lattice, leaves.origin(l));

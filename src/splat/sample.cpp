@@ -8,8 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+#include "base/parallel.hpp"
 
 namespace grainvdb {
 namespace {
@@ -155,9 +154,9 @@ Vec3 interpolate(const Lattice& lattice, const std::array<Place, 3>& places, Rat
 
 std::vector<Vec3> sample_trilinear(const Lattice& lattice, const RatioView& ratio, const Columns3& position) {
   std::vector<Vec3> result(position[0].size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.size()), [&](const auto& range) {
+  parallel_ranges(result.size(), [&](std::size_t begin, std::size_t end) {
     VoxelRatio at_voxel(ratio);
-    for (std::size_t p = range.begin(); p != range.end(); ++p)
+    for (std::size_t p = begin; p != end; ++p)
       result[p] = interpolate(
           lattice,
           {place(lattice, 0, position[0][p]), place(lattice, 1, position[1][p]), place(lattice, 2, position[2][p])},
@@ -170,8 +169,8 @@ std::vector<Vec3> sample_profile(const Lattice& lattice, const RatioView& ratio,
                                  std::array<bool, 3> homogeneous) {
   Profile profile(ratio, homogeneous);
   std::vector<Vec3> result(position[0].size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.size()), [&](const auto& range) {
-    for (std::size_t p = range.begin(); p != range.end(); ++p) {
+  parallel_ranges(result.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p != end; ++p) {
       std::array<Place, 3> places{};
       for (int a = 0; a < 3; ++a)
         if (!homogeneous[a]) places[a] = place(lattice, a, position[a][p]);
