@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
+#include <string>
 
 #include <unistd.h>
 
 #include "bin/branches.hpp"
 #include "grainvdb/stage.hpp"
+#include "pipeline/number.hpp"
 #include "splat/sample.hpp"
 #include "splat/splat.hpp"
 
@@ -38,6 +41,34 @@ double memory_limit(const Limits& limits) {
   return 0.75 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
+// Refuses positions that lie too far from the box. `who` names the one at an index.
+void check_extent(const Frame& frame, const Columns3& position, const Lattice& lattice, const Pipeline& pipeline,
+                  const std::function<std::string(std::size_t)>& who) {
+  constexpr double indexable = 1e9;  // voxels; farther out, wrapping into a period leaves nothing but rounding
+  for (int a = 0; a < 3; ++a) {
+    const auto axis = static_cast<std::size_t>(a);
+    const bool periodic = frame.box.periodic[a];
+    const double limit = periodic ? indexable : static_cast<double>(pipeline.limits.extent);
+    const double middle = lattice.to_index(a, 0.5 * (frame.box.lo[axis] + frame.box.hi[axis]));
+    for (std::size_t i = 0; i < position[axis].size(); ++i) {
+      const double x = position[axis][i];
+      const double index = lattice.to_index(a, x);
+      if (std::abs(index - middle) <= limit && std::abs(index) < indexable) continue;
+      const bool inside = x >= frame.box.lo[axis] && x <= frame.box.hi[axis];
+      const char* what = inside ? " is too many voxels from the middle of the box" : " lies too far from the box";
+      const char* hint = "Leave the stray particle out with select, correct lattice.voxel, or raise limits.extent";
+      if (periodic) hint = "Correct the coordinate, or leave the particle out with select";
+      if (inside) hint = "Choose larger voxels, or raise limits.extent";
+      throw LimitError(
+          {{frame.file, 0},
+           who(i) + " of step " + std::to_string(frame.step) + what,
+           std::string(1, "xyz"[a]) + " = " + print_number(x) + " at lattice.voxel " + print_number(pipeline.voxel),
+           "at most " + print_number(limit) + " voxels from its middle" + (periodic ? "" : ", limits.extent"),
+           hint});
+    }
+  }
+}
+
 }  // namespace
 
 void apply_selection(const Selection& selection, const Box& box, Particles& particles) {
@@ -53,35 +84,18 @@ void apply_selection(const Selection& selection, const Box& box, Particles& part
   keep_rows(particles.type, rows);
 }
 
-void check_extent(const Frame& frame, const Lattice& lattice, const Pipeline& pipeline) {
-  const auto limit = static_cast<double>(pipeline.limits.extent);
-  const Particles& p = frame.particles;
-  for (int a = 0; a < 3; ++a) {
-    if (frame.box.periodic[a]) continue;  // wrapped into the box
-    const auto axis = static_cast<std::size_t>(a);
-    const double middle = lattice.to_index(a, 0.5 * (frame.box.lo[axis] + frame.box.hi[axis]));
-    for (std::size_t i = 0; i < p.size(); ++i) {
-      const double index = lattice.to_index(a, p.position[axis][i]);
-      if (std::abs(index - middle) <= limit && std::abs(index) < 1e9) continue;
-      throw LimitError({{frame.file, 0},
-                        "particle " + std::to_string(p.id[i]) + " of step " + std::to_string(frame.step) +
-                            " lies too far from the box",
-                        std::string(1, "xyz"[a]) + " = " + std::to_string(p.position[axis][i]),
-                        "at most limits.extent = " + std::to_string(pipeline.limits.extent) + " voxels from its middle",
-                        "Remove the stray particle with select, correct lattice.voxel, or raise limits.extent"});
-    }
-  }
-}
-
 FrameContext::FrameContext(Frame frame, const Pipeline& pipeline, const Lattice& lattice, const LucyKernel& kernel,
                            const MomentMeans* means)
     : pipeline_(pipeline), lattice_(lattice), kernel_(kernel), means_(means), frame_(std::move(frame)) {
-  check_extent(frame_, lattice_, pipeline_);
   if (frame_.contacts.size() > 0) {
     branches_ = half_branches(frame_);
     frame_.contacts = {};
+    check_extent(frame_, branches_.start, lattice_, pipeline_,
+                 [](std::size_t) { return std::string("a particle with contacts"); });
   }
   apply_selection(pipeline_.select, frame_.box, frame_.particles);
+  check_extent(frame_, frame_.particles.position, lattice_, pipeline_,
+               [&](std::size_t i) { return "particle " + std::to_string(frame_.particles.id[i]); });
 }
 
 void FrameContext::bucket_particles() {

@@ -17,10 +17,6 @@
 
 namespace grainvdb {
 
-/// Refuses positions whose voxel is further than `limits.extent` from the box, before any grid grows towards them
-/// (LimitError naming the particle).
-void check_extent(const Frame& frame, const Lattice& lattice, const Pipeline& pipeline);
-
 /// Keeps the particles that the selection counts as material.
 void apply_selection(const Selection& selection, const Box& box, Particles& particles);
 

@@ -78,6 +78,10 @@ std::string lines(const Range& range, F&& line) {
 Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const FrameSource& source,
                          std::span<const std::size_t> wanted) {
   const auto plain = [](const auto& s) { return s; };
+  std::vector<std::size_t> skipped;
+  for (std::size_t k = 0; k < source.frames().size(); ++k)
+    if (!std::binary_search(wanted.begin(), wanted.end(), k)) skipped.push_back(k);
+  const auto step = [&](std::size_t k) { return std::to_string(source.frames()[k].step); };
   std::set<std::string> columns;
   for (const Sweep& sweep : plan.sweeps)
     for (const std::string& name : column_names(sweep.columns)) columns.insert(name);
@@ -85,8 +89,8 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
           {"pipeline", pipeline.resolved},
           {"inputs", lines(source.files(), [](const auto& f) { return f.first + " " + std::to_string(f.second); })},
           {"units", source.units().name},
-          {"steps", lines(wanted, [&](std::size_t k) { return std::to_string(source.frames()[k].step); })},
-          {"skipped_frames", ""},
+          {"steps", lines(wanted, step)},
+          {"skipped_frames", lines(skipped, step)},
           {"columns_read", lines(columns, plain)},
           {"computed", lines(plan.stages, [](const Stage* s) { return s->name + ": " + s->equation; })},
           {"not_needed", lines(plan.not_needed, plain)}};
@@ -104,6 +108,14 @@ OutputLayout layout_of(const Pipeline& pipeline, const Plan& plan, const FrameSo
   layout.length_unit = source.units().length;
   layout.time_unit = source.frames().front().time ? source.units().time : "step";
   return layout;
+}
+
+[[noreturn]] void refuse_without_material(const FrameSource& source, std::span<const std::size_t> wanted) {
+  throw InputError({{source.frames()[wanted.front()].file, 0},
+                    "no material in any of the frames",
+                    {},
+                    "at least one particle that select keeps",
+                    "Check select and frames"});
 }
 
 std::size_t channel_count(const Plan& plan) {
@@ -142,10 +154,12 @@ RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& 
     if (progress) progress(now);
   };
 
+  std::size_t material = 0;
   for (std::size_t w = 0; w < windows; ++w) {
     const std::size_t first = w * per_window;
     const auto frames = std::span(wanted).subspan(first, std::min(per_window, wanted.size() - first));
     const WindowMoments moments = average_window(pipeline, plan, lattice, source, frames, clock, frame_done);
+    material += moments.material;
     const DerivedFields derived =
         clock.time("derive", [&] { return derive_fields(pipeline, plan, lattice, source.units(), moments.means); });
     const std::vector<const SparseField*> fields = wanted_fields(pipeline, derived);
@@ -153,12 +167,7 @@ RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& 
     clock.time("write", [&] {
       if (w == 0) {
         if (!bounds) bounds = moments.means.topology()->bounds();
-        if (!bounds)
-          throw InputError({{source.frames()[frames.front()].file, 0},
-                            "no material in any of the frames",
-                            {},
-                            "at least one particle that select keeps",
-                            "Check select and frames"});
+        if (!bounds) refuse_without_material(source, wanted);
         check_dense_size(*bounds, pipeline);
         for (const auto& sink : sinks)
           sink->begin(layout_of(pipeline, plan, source, lattice, *bounds, windows, fields));
@@ -173,6 +182,8 @@ RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& 
     for (const ReasonInfo& r : reasons())
       if (const std::size_t n = derived.mask.count(r.reason); n > 0) report.masked.emplace_back(r.name, n);
   }
+
+  if (material == 0) refuse_without_material(source, wanted);  // contacts alone leave every other field undefined
 
   clock.time("write", [&] {
     for (const auto& sink : sinks) {

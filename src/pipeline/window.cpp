@@ -27,12 +27,14 @@ WindowMoments average_window(const Pipeline& pipeline, const Plan& plan, const L
   const LucyKernel kernel(pipeline.cutoff);
   MomentSums sums(plan.means);
   std::optional<MomentMeans> means;
+  std::size_t material = 0;
   for (std::size_t s = 0; s < plan.sweeps.size(); ++s) {
     const Sweep& sweep = plan.sweeps[s];
     for (std::size_t k : wanted) {
       Frame frame = clock.time("read", [&] { return source.read(k, sweep.columns); });
       clock.time("splat", [&] {
         FrameContext context(std::move(frame), pipeline, lattice, kernel, means ? &*means : nullptr);
+        material += context.particles().size();
         for (const auto& pass : sweep.passes) context.run_pass(pass, sums);
         sums.end_frame();
       });
@@ -41,7 +43,7 @@ WindowMoments average_window(const Pipeline& pipeline, const Plan& plan, const L
     sums.end_sweep();
     clock.time("average", [&] { means.emplace(sums.means(plan.means, wanted.size())); });
   }
-  return {std::move(*means), time_of(source, wanted)};
+  return {std::move(*means), time_of(source, wanted), material};
 }
 
 }  // namespace grainvdb

@@ -18,6 +18,7 @@ namespace grainvdb {
 struct WindowMoments {
   MomentMeans means;
   OutputTime time;
+  std::size_t material = 0;  ///< particles that select kept, summed over frames and sweeps
 };
 
 /// Reads and splats the frames `wanted` (indices into the source). `frame_done(sweep)` is called after each frame of

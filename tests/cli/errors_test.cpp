@@ -126,5 +126,43 @@ TEST(Errors, ValidateFindsWhatWouldFailLater) {
   EXPECT_EQ(run_command({"validate", "p.yaml", "--no-input", "--set", "kernel.cutoff=0"}, folder.path()).exit_code, 1);
 }
 
+// The dump of step 0 with another first coordinate of particle 1, in a box that is open along x.
+void write_with_stray(const Folder& folder, const std::string& x, const std::string& boundary) {
+  std::string text = dump_text(0);
+  text.replace(text.find("pp pp pp"), 2, boundary);
+  text.replace(text.find("\n1 1 0.5 ") + 5, 3, x);
+  folder.write("frames/dump0.txt", text);
+}
+
+TEST(Errors, StrayParticlesAreRefusedUnlessSelectLeavesThemOut) {
+  const Folder folder;
+  write_example(folder);
+  const auto run = [&](std::vector<std::string> options) {
+    std::vector<std::string> arguments{"run", "p.yaml", "--frames", "0"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run_command(arguments, folder.path());
+  };
+  for (const std::string boundary : {"ff", "pp"}) {
+    write_with_stray(folder, "1e30", boundary);
+    const CommandResult refused = run({});
+    EXPECT_EQ(refused.exit_code, 4) << boundary;
+    EXPECT_THAT(refused.err,
+                AllOf(HasSubstr("particle 1 of step 0 lies too far from the box"), HasSubstr("x = 1.0e+30")));
+    EXPECT_EQ(run({"--set", "select.ids=[2,64]"}).exit_code, 0) << boundary;
+  }
+}
+
+TEST(Errors, ASelectionThatKeepsNothingIsRefused) {
+  const Folder folder;
+  write_example(folder);
+  for (const char* fields : {"output.fields=[phi]", "output.fields=[stress]"}) {
+    const CommandResult result =
+        run_command({"run", "p.yaml", "--set", "select.types=[7]", "--set", fields}, folder.path());
+    EXPECT_EQ(result.exit_code, 2) << fields;
+    EXPECT_THAT(result.err, HasSubstr("no material in any of the frames"));
+  }
+  EXPECT_THAT(folder.names_in("output"), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace grainvdb::test
