@@ -15,10 +15,11 @@ find_package(yaml-cpp 0.7 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(CLI11 2.1 REQUIRED)
 find_package(FastFloat REQUIRED)
+find_package(hwy 1.0 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(zstd REQUIRED)
 
 # What the library links but its users need not know.
 set(GRAINVDB_PRIVATE_DEPENDENCIES
   $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> $<BUILD_INTERFACE:FastFloat::fast_float>
-  hdf5::hdf5_hl hdf5::hdf5 yaml-cpp ZLIB::ZLIB zstd::libzstd_shared)
+  hdf5::hdf5_hl hdf5::hdf5 yaml-cpp ZLIB::ZLIB zstd::libzstd_shared hwy::hwy)

@@ -42,6 +42,12 @@ struct Moment {
       mean_needs{};              ///< moments whose time mean must be known before: one more sweep over the frames
   LineIntegral line_integral{};  ///< for contacts
 
+  /// For sums Σ w q W whose mean is taken off later: the moment Σ w W. The splat then sums w (q - r) with a local
+  /// reference r of q, in which single precision loses nothing.
+  MomentPtr weight{};
+  /// For sums whose small differences are fields: added up in double precision throughout.
+  bool in_double = false;
+
   /// Fills q for every material particle (or half branch), laid out [entry][value].
   std::function<void(const FrameView& view, std::span<double> q)> values{};
 

@@ -36,6 +36,11 @@ struct RunReport {
 /// LimitError. `grainvdb validate` calls it too. Returns the lattice with its periods.
 Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source);
 
+/// Reads frame k with every column that the run will need, and makes the checks that the run makes of each frame before
+/// it computes anything. Throws InputError, IoError or LimitError.
+void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
+                 std::size_t k);
+
 /// Runs the whole pipeline into the sinks. `progress` is called from the calling thread, after each frame.
 RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                        const std::vector<std::unique_ptr<FieldSink>>& sinks,

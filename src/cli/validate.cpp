@@ -12,8 +12,8 @@ constexpr const char* footer = R"(Examples:
   grainvdb validate pipelines/shear_cell.yaml
   grainvdb validate pipelines/shear_cell.yaml --no-input --set kernel.cutoff=3e-3
 
-Prints 'valid' and exits with 0 only when the pipeline can be run. The first selected frame is read with all the columns
-that the run will need; later frames are not.)";
+Prints 'valid' and exits with 0 only when the pipeline can be run. The first selected frame is read and checked as
+the run will; later frames are not.)";
 
 struct Options {
   PipelineArguments pipeline;
@@ -25,10 +25,8 @@ void validate(const Options& options) {
   const Plan plan = make_plan(pipeline);
   if (!options.no_input) {
     const auto source = open_input(pipeline, plan);
-    check_against_input(pipeline, plan, *source);
-    ColumnSet columns;
-    for (const Sweep& sweep : plan.sweeps) columns |= sweep.columns;
-    source->read(select_frames(pipeline.frames, source->frames().size()).front(), columns);
+    const Lattice lattice = check_against_input(pipeline, plan, *source);
+    check_frame(pipeline, plan, lattice, *source, select_frames(pipeline.frames, source->frames().size()).front());
   }
   std::cout << "valid\n";
 }

@@ -53,18 +53,21 @@ MomentPtr two_pass_profile(const Fluctuating& f, std::array<bool, 3> homogeneous
   return std::make_shared<const Moment>(std::move(m));
 }
 
-/// Σ V |q|² W and Σ V q W, in channels 0 and 1 … 3.
+/// Σ V |q|² W, Σ V q W and Σ V W, in channels 0, 1 … 3 and 4. The volumes are summed along because all five must carry
+/// the same rounding for their difference to mean anything.
 MomentPtr second_moment(const Fluctuating& f) {
   Moment m;
   m.name = "volume " + f.label + " squared";
-  m.channels = 4;
+  m.channels = 5;
+  m.in_double = true;
   m.columns = Column::radius | f.column;
   m.values = [vector = f.vector](const FrameView& view, std::span<double> q) {
     const Particles& p = view.particles();
     for (std::size_t i = 0; i < p.size(); ++i) {
       const double volume = sphere_volume(p.radius[i]);
-      q[4 * i] = volume * square_distance(p.*vector, i, {0, 0, 0});
-      for (std::size_t a = 0; a < 3; ++a) q[4 * i + 1 + a] = volume * (p.*vector)[a][i];
+      q[5 * i] = volume * square_distance(p.*vector, i, {0, 0, 0});
+      for (std::size_t a = 0; a < 3; ++a) q[5 * i + 1 + a] = volume * (p.*vector)[a][i];
+      q[5 * i + 4] = volume;
     }
   };
   return std::make_shared<const Moment>(std::move(m));
@@ -75,7 +78,7 @@ MomentPtr one_pass(const Fluctuating& f) {
   Moment m;
   m.name = "volume " + f.label + " fluctuation one_pass";
   m.kind = Moment::Kind::voxels;
-  m.frame_needs = {second_moment(f), volume_moment()};
+  m.frame_needs = {second_moment(f)};
   m.voxels = [](std::span<const double* const> in, std::span<double* const> out) {
     const double* volume = in[4];
     for (int v = 0; v < leaf_size; ++v) {

@@ -35,6 +35,7 @@ Moment weight_moment(Weight w) {
 /// Σ w q W for a vector column q of the particles.
 Moment vector_moment(Weight w, Column column, const char* label, Columns3 Particles::*member) {
   Moment m;
+  m.weight = std::make_shared<const Moment>(weight_moment(w));
   m.name = std::string(name_of(w)) + " " + label;
   m.channels = 3;
   m.columns = columns_of(w) | column;
@@ -51,6 +52,7 @@ Moment vector_moment(Weight w, Column column, const char* label, Columns3 Partic
 /// The same sum with ∂_j W for W.
 MomentPtr gradient_of(Moment m) {
   m.name += " gradient";
+  m.weight.reset();
   m.kind = Moment::Kind::particle_gradients;
   m.channels *= 3;
   return std::make_shared<const Moment>(std::move(m));

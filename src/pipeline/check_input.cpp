@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "grainvdb/run.hpp"
+#include "pipeline/frame_context.hpp"
 
 namespace grainvdb {
 namespace {
@@ -56,6 +57,13 @@ void check_periodic_box(const Pipeline& pipeline, const FrameInfo& first, const 
 
 }  // namespace
 
+void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
+                 std::size_t k) {
+  ColumnSet all;
+  for (const Sweep& s : plan.sweeps) all |= s.columns;
+  const FrameContext checked(source.read(k, all), pipeline, lattice, LucyKernel(pipeline.cutoff), nullptr);
+}
+
 Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source) {
   check_plan(pipeline, plan);
   const auto& frames = source.frames();
@@ -77,11 +85,7 @@ Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSou
   }
 
   // A column that only the second sweep wants would be missed after the whole of the first.
-  if (plan.sweeps.size() > 1) {
-    ColumnSet all;
-    for (const Sweep& s : plan.sweeps) all |= s.columns;
-    source.read(wanted.front(), all);
-  }
+  if (plan.sweeps.size() > 1) check_frame(pipeline, plan, lattice, source, wanted.front());
   return lattice;
 }
 

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "bin/branches.hpp"
+#include "bin/least_leaves.hpp"
 #include "grainvdb/stage.hpp"
 #include "pipeline/number.hpp"
 #include "splat/sample.hpp"
@@ -69,6 +70,25 @@ void check_extent(const Frame& frame, const Columns3& position, const Lattice& l
   }
 }
 
+// Refuses, before anything is computed, material so far apart that the box to be written would exceed the limit.
+void check_spread(const Frame& frame, const Lattice& lattice, const Pipeline& pipeline) {
+  const Particles& p = frame.particles;
+  if (p.size() == 0) return;
+  double voxels = 1;
+  for (int a = 0; a < 3; ++a) {
+    const auto axis = static_cast<std::size_t>(a);
+    const auto [lo, hi] = std::minmax_element(p.position[axis].begin(), p.position[axis].end());
+    const auto& period = lattice.period(a);
+    voxels *= period ? period->count : (*hi - *lo + pipeline.cutoff) / pipeline.voxel;
+  }
+  if (voxels <= static_cast<double>(pipeline.limits.dense_voxels)) return;
+  throw LimitError({{frame.file, 0},
+                    "the material of step " + std::to_string(frame.step) + " spans a box of too many voxels",
+                    print_number(voxels),
+                    "at most limits.dense_voxels = " + std::to_string(pipeline.limits.dense_voxels),
+                    "Choose larger voxels, leave stray particles out with select, or raise the limit"});
+}
+
 }  // namespace
 
 void apply_selection(const Selection& selection, const Box& box, Particles& particles) {
@@ -96,6 +116,7 @@ FrameContext::FrameContext(Frame frame, const Pipeline& pipeline, const Lattice&
   apply_selection(pipeline_.select, frame_.box, frame_.particles);
   check_extent(frame_, frame_.particles.position, lattice_, pipeline_,
                [&](std::size_t i) { return "particle " + std::to_string(frame_.particles.id[i]); });
+  check_spread(frame_, lattice_, pipeline_);
 }
 
 void FrameContext::bucket_particles() {
@@ -104,18 +125,18 @@ void FrameContext::bucket_particles() {
   topology_ = particle_topology(lattice_, kernel_, *buckets_);
 }
 
-void FrameContext::check_memory(int values, const MomentSums& sums) const {
+void FrameContext::check_memory(std::size_t leaves, int values, const MomentSums& sums) const {
   // Splat buffers of this group, the sums, and their mean when the window ends.
-  const std::size_t leaves = topology_->leaf_count();
   const double need = static_cast<double>(leaves) * leaf_size * sizeof(double) * values +
                       2.0 * static_cast<double>(sums.bytes(std::max(leaves, sums.leaf_count())));
   const double limit = memory_limit(pipeline_.limits);
   if (need <= limit) return;
-  throw LimitError({{frame_.file, 0},
-                    "step " + std::to_string(frame_.step) + " needs more memory than is allowed",
-                    std::to_string(need / 1e9) + " GB for " + std::to_string(leaves) + " leaves of 512 voxels",
-                    "at most " + std::to_string(limit / 1e9) + " GB",
-                    "Use larger voxels or fewer fields, or raise limits.memory_gb"});
+  throw LimitError(
+      {{frame_.file, 0},
+       "step " + std::to_string(frame_.step) + " needs more memory than is allowed",
+       "at least " + std::to_string(need / 1e9) + " GB for " + std::to_string(leaves) + " leaves of 512 voxels",
+       "at most " + std::to_string(limit / 1e9) + " GB",
+       "Use larger voxels or fewer fields, or raise limits.memory_gb"});
 }
 
 std::size_t FrameContext::entries(Moment::Kind kind) const {
@@ -127,7 +148,9 @@ void FrameContext::run_pass(const std::vector<MomentPtr>& pass, MomentSums& sums
   std::vector<Group> groups;
   for (const MomentPtr& m : pass) {
     if (m->kind == Moment::Kind::voxels) continue;
-    const auto same = [&](const Group& g) { return g[0]->kind == m->kind && g[0]->line_integral == m->line_integral; };
+    const auto same = [&](const Group& g) {
+      return g[0]->kind == m->kind && g[0]->line_integral == m->line_integral && g[0]->in_double == m->in_double;
+    };
     const auto it = std::find_if(groups.begin(), groups.end(), same);
     if (it == groups.end()) {
       groups.push_back({m});
@@ -140,38 +163,64 @@ void FrameContext::run_pass(const std::vector<MomentPtr>& pass, MomentSums& sums
     if (m->kind == Moment::Kind::voxels) combine_voxels(*m, sums);
 }
 
-void FrameContext::splat_group(const Group& group, MomentSums& sums) {
+FrameContext::Values FrameContext::values_of(Group& group) const {
+  // A weight that nobody asked for is splatted along with what it weighs.
+  const auto channel_of = [&](const Moment& wanted) {
+    int channel = 0;
+    for (const MomentPtr& m : group) {
+      if (m->name == wanted.name) return channel;
+      channel += m->value_count();
+    }
+    return -1;
+  };
+  for (std::size_t g = 0; g < group.size(); ++g)
+    if (const MomentPtr weight = group[g]->weight; weight && channel_of(*weight) < 0) group.push_back(weight);
+
+  Values all;
+  for (const MomentPtr& m : group)
+    all.weight_of.insert(all.weight_of.end(), static_cast<std::size_t>(m->value_count()),
+                         m->weight ? channel_of(*m->weight) : -1);
+
   const std::size_t n = entries(group[0]->kind);
-  int values = 0;
-  for (const MomentPtr& m : group) values += m->value_count();
-  const auto stride = static_cast<std::size_t>(values);
-
-  if (group[0]->kind != Moment::Kind::contacts) {
-    bucket_particles();
-    check_memory(values, sums);
-  }
-
-  std::vector<double> q(n * stride);
+  const std::size_t stride = all.weight_of.size();
+  all.q.resize(n * stride);
   std::vector<double> own;
   std::size_t first = 0;
   for (const MomentPtr& m : group) {
     const auto width = static_cast<std::size_t>(m->value_count());
     own.assign(n * width, 0.0);
     m->values(*this, own);
-    for (std::size_t i = 0; i < n; ++i) std::copy_n(own.data() + i * width, width, q.data() + i * stride + first);
+    for (std::size_t i = 0; i < n; ++i) std::copy_n(own.data() + i * width, width, all.q.data() + i * stride + first);
     first += width;
   }
-  keep(splat(group, q, values), group, sums);
+  return all;
 }
 
-LeafBuffers FrameContext::splat(const Group& group, const std::vector<double>& q, int values) const {
+void FrameContext::splat_group(const Group& group, MomentSums& sums) {
+  Group weighed = group;
+  const Values values = values_of(weighed);
+  const int channels = static_cast<int>(values.weight_of.size());
+  const bool contacts = group[0]->kind == Moment::Kind::contacts;
+  const Columns3& nodes = contacts ? branches_.start : frame_.particles.position;
+  check_memory(static_cast<std::size_t>(least_leaves(lattice_, nodes, kernel_.cutoff())), channels, sums);
+  if (!contacts) {
+    bucket_particles();
+    check_memory(topology_->leaf_count(), channels, sums);
+  }
+  keep(splat(group, values), group, sums);
+}
+
+LeafBuffers FrameContext::splat(const Group& group, const Values& values) const {
+  const int channels = static_cast<int>(values.weight_of.size());
   switch (group[0]->kind) {
     case Moment::Kind::contacts:
-      return splat_contacts(lattice_, kernel_, branches_, q, values, group[0]->line_integral);
+      return splat_contacts(lattice_, kernel_, branches_, values.q, channels, group[0]->line_integral);
     case Moment::Kind::particle_gradients:
-      return splat_particle_gradients(lattice_, kernel_, *buckets_, topology_, q, values);
+      return splat_particle_gradients(lattice_, kernel_, *buckets_, topology_, values.q, channels);
     default:
-      return splat_particles(lattice_, kernel_, *buckets_, topology_, q, values);
+      return group[0]->in_double
+                 ? splat_particles(lattice_, kernel_, *buckets_, topology_, values.q, channels)
+                 : splat_particles_fast(lattice_, kernel_, *buckets_, topology_, values.q, values.weight_of);
   }
 }
 

@@ -47,10 +47,17 @@ class FrameContext : public FrameView {
   void splat_group(const Group& group, MomentSums& sums);
   void combine_voxels(const Moment& moment, MomentSums& sums);
   void keep(LeafBuffers buffers, const Group& group, MomentSums& sums);
-  LeafBuffers splat(const Group& group, const std::vector<double>& q, int values) const;
+  /// The values of all moments of a group, [entry][value], with the channel that weighs each value or -1.
+  struct Values {
+    std::vector<double> q;
+    std::vector<int> weight_of;
+  };
+  /// Appends to the group the weights that it lacks.
+  Values values_of(Group& group) const;
+  LeafBuffers splat(const Group& group, const Values& values) const;
   void bucket_particles();
   /// Refuses, before it is allocated, what would exceed limits.memory_gb (LimitError).
-  void check_memory(int values, const MomentSums& sums) const;
+  void check_memory(std::size_t leaves, int values, const MomentSums& sums) const;
   std::size_t entries(Moment::Kind kind) const;
 
   const Pipeline& pipeline_;

@@ -95,9 +95,14 @@ TEST(Errors, FilesThatCannotBeReadExitWithThree) {
 TEST(Errors, ExceededLimitsExitWithFour) {
   const Folder folder;
   write_example(folder);
-  const CommandResult result = run_command({"run", "p.yaml", "--set", "limits.dense_voxels=100"}, folder.path());
-  EXPECT_EQ(result.exit_code, 4);
-  EXPECT_THAT(result.err, HasSubstr("limits.dense_voxels"));
+  expect_refused(folder, 4, AllOf(HasSubstr("spans a box of too many voxels"), HasSubstr("limits.dense_voxels = 100")),
+                 {"--set", "limits.dense_voxels=100"});
+  // 4 Terabytes: refused before anything is allocated or takes long.
+  const CommandResult big =
+      run_command({"run", "p.yaml", "--set", "lattice.voxel=0.001", "--set", "limits.dense_voxels=1000000000000000000"},
+                  folder.path());
+  EXPECT_EQ(big.exit_code, 4);
+  EXPECT_THAT(big.err, AllOf(HasSubstr("needs more memory than is allowed"), HasSubstr("limits.memory_gb")));
   EXPECT_THAT(folder.names_in("output"), testing::IsEmpty());
 }
 
@@ -148,6 +153,7 @@ TEST(Errors, StrayParticlesAreRefusedUnlessSelectLeavesThemOut) {
     EXPECT_EQ(refused.exit_code, 4) << boundary;
     EXPECT_THAT(refused.err,
                 AllOf(HasSubstr("particle 1 of step 0 lies too far from the box"), HasSubstr("x = 1.0e+30")));
+    EXPECT_EQ(run_command({"validate", "p.yaml", "--set", "frames=0"}, folder.path()).err, refused.err) << boundary;
     EXPECT_EQ(run({"--set", "select.ids=[2,64]"}).exit_code, 0) << boundary;
   }
 }

@@ -9,6 +9,7 @@
 
 #include "grainvdb/mask.hpp"
 #include "support/lattice_packing.hpp"
+#include "support/reference.hpp"
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
@@ -133,8 +134,8 @@ double squares(const std::array<double, 9>& l) {
 constexpr double variance_ripple = 0.035;
 constexpr double offset_ripple = 2.9e-3;
 // Central differences reach over 2 h = d, one period of the lattice, over which u grows by exactly L d: only the
-// rounding of u ≤ 17 to float is left, twice 2⁻²⁴ of it.
-constexpr double gradient_rounding = 2 * 17 * 0x1p-24;
+// errors of u ≤ 17 are left, twice: 2⁻²⁴ of it from the float grid, and those of its two sums.
+constexpr double gradient_rounding = 2 * 17 * (0x1p-24 + 2 * sum_rounding);
 
 // u = L x (physics section 6): one_pass has T = (c²/12) L:L of its own, one_pass_corrected none, two_pass only the
 // square of the ripple of u.

@@ -9,8 +9,9 @@
 namespace grainvdb::testing {
 namespace {
 
-/// Relative error of a velocity that was averaged and interpolated in double.
-constexpr double velocity_rounding = 1e-13;
+/// Error of a velocity that was averaged and interpolated, relative to the velocities' magnitude: numerator and
+/// denominator both carry the error of their sums.
+constexpr double velocity_rounding = 2 * sum_rounding;
 
 std::string text_option(const Pipeline& p, const std::string& stage, const std::string& name) {
   return option<std::string>(p.stages, stage, name);

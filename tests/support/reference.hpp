@@ -11,10 +11,10 @@
 
 namespace grainvdb::testing {
 
-/// How exactly sums are formed by the program: relative to Σ |terms|, in double. (Storing in a float grid comes on
-/// top.) A thousand terms and a few roundings each stay below 1000 × 2⁻⁵² = 2.2e-13; the quadrature of the reference's
-/// line integrals is good to about that as well.
-inline constexpr double sum_rounding = 1e-12;
+/// How exactly sums are formed by the program, relative to Σ |terms|: its particle kernel works in single precision and
+/// is held to 1e-5 at every voxel by its own tests, which find errors up to 1e-6 there. (Storing in a float grid comes
+/// on top.)
+inline constexpr double sum_rounding = 4e-6;
 /// What is asked of every field on float grids: error ≤ 1e-5 Σ |terms|.
 static_assert(float_rounding + sum_rounding <= 1e-5);
 
