@@ -1,0 +1,72 @@
+// The pipelines that come with the project, as they are, on the dumps that come with it.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "grainvdb/frame_source.hpp"
+#include "grainvdb/pipeline.hpp"
+#include "support/reference.hpp"
+#include "support/run_in_memory.hpp"
+
+namespace grainvdb::testing {
+namespace {
+
+std::string folder() {
+  return GRAINVDB_SOURCE_DIR "/pipelines";
+}
+
+/// Mean over the frames of ΣV of the material.
+double particle_volume(FrameSource& source, const Pipeline& p) {
+  const ColumnSet all = Column::velocity | Column::angular_velocity | Column::radius | Column::mass | Column::type;
+  double sum = 0;
+  for (std::size_t k = 0; k < source.frames().size(); ++k) {
+    const Particles grains = material(source.read(k, all), p.select);
+    for (double r : grains.radius) sum += sphere_volume(r);
+  }
+  return sum / static_cast<double>(source.frames().size());
+}
+
+class ShippedPipeline : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedPipeline, Runs) {
+  const Pipeline p = load_pipeline(folder() + "/" + GetParam() + ".yaml");
+  const auto source = open_dumps(p.input);
+  const Result r = run(p, *source);
+  EXPECT_TRUE(r.record.committed);
+  const Written& w = r.only();
+  EXPECT_EQ(w.time.frame_count, source->frames().size());
+
+  double volume = 0;
+  for (const std::string& name : p.fields) {
+    const FieldCopy& field = w.field(name);
+    std::size_t defined = 0;
+    std::size_t voxels = 0;
+    field.for_each_active([&](const Coord& c) {
+      ++voxels;
+      defined += std::isfinite(field.at(c)) ? 1U : 0U;
+      if (name == "phi") volume += static_cast<double>(field.at(c)) * std::pow(p.voxel, 3);
+    });
+    EXPECT_GT(2 * defined, voxels) << name << " is undefined nearly everywhere";
+  }
+  // h³Σφ = ΣV: at c/h = 6 a particle's sum is within 2.4e-5 of its volume, and the sums are exact to 1e-5.
+  EXPECT_DOUBLE_EQ(p.cutoff / p.voxel, 6);
+  const double expected = particle_volume(*source, p);
+  EXPECT_NEAR(volume, expected, (2.4e-5 + 1e-5) * expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(Pipelines, ShippedPipeline, ::testing::Values("minimal", "shear_cell", "silo"),
+                         [](const auto& param) { return std::string(param.param); });
+
+TEST(ShippedPipelines, AreAllTested) {
+  std::vector<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(folder())) names.push_back(file.path().stem());
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"minimal", "shear_cell", "silo"}));
+}
+
+}  // namespace
+}  // namespace grainvdb::testing
