@@ -65,7 +65,7 @@ void ReferenceNumbers::same_definitions_agree_to_rounding() {
       const double magnitude = f.magnitude[f.index(n, c)];
       const double error = std::abs(s.found(field, row, c) - s.table.at(row, column));
       const double bound =
-          (float_rounding + sum_rounding + 1e-10 + 2 * weights) * magnitude + f.floor[f.index(n, c)] + slack;
+          (float_rounding + f.rounding + 1e-10 + 2 * weights) * magnitude + f.floor[f.index(n, c)] + slack;
       EXPECT_LE(error, bound) << column << " row " << row << " magnitude " << magnitude;
       if (weights < 1e-9) worst[field] = std::max(worst[field], std::max(0.0, error - slack) / magnitude);
     };

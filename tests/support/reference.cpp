@@ -171,7 +171,8 @@ class Grainer {
 
 /// Channels first … first+components-1 over the frames' mean; `floor_channel` holds their rounding, if any does.
 ReferenceField mean_of(const Sums& sums, int components, double frames, std::optional<int> floor_channel = {}) {
-  ReferenceField f{components, {}, {}, {}};
+  ReferenceField f;
+  f.components = components;
   for (std::size_t n = 0; n < sums.reached.size(); ++n)
     for (int c = 0; c < components; ++c) {
       f.value.push_back(sums.at(n, c) / frames);
@@ -196,7 +197,8 @@ ReferenceField ratio_of(const Sums& above, int components, const Sums& below, st
 
 /// The quotient rule on u = Σ w v W/Σ w W.
 ReferenceField gradient_by_kernel(const Moments& m) {
-  ReferenceField f{9, {}, {}, {}};
+  ReferenceField f;
+  f.components = 9;
   for (std::size_t n = 0; n < m.weight.reached.size(); ++n)
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
@@ -233,7 +235,7 @@ double largest_radius(const std::vector<Frame>& frames) {
 Uncertain ReferenceField::expected(std::size_t voxel, int component) const {
   const std::size_t at = index(voxel, component);
   if (std::isnan(value[at])) return undefined_value();
-  return stored({value[at], sum_rounding * magnitude[at] + floor[at]});
+  return stored({value[at], rounding * magnitude[at] + floor[at]});
 }
 
 Particles material(const Frame& frame, const Selection& selection) {
@@ -289,6 +291,7 @@ Reference coarse_grain(const std::vector<Frame>& frames, const Pipeline& pipelin
   fields["temperature"] = ratio_of(total.fluctuation, 1, total.volume, 1);
   fields["rotational_fluctuation"] = ratio_of(total.spin_fluctuation, 1, total.volume, 1);
   fields["contact_stress"] = mean_of(total.contact, 9, count);
+  fields["contact_stress"].rounding = contact_sum_rounding;
   fields["kinetic_stress"] = mean_of(total.kinetic, 9, count, 9);
   fields["gradient_by_kernel"] = gradient_by_kernel(total);
   return result;

@@ -15,6 +15,9 @@ namespace grainvdb::testing {
 /// is held to 1e-5 at every voxel by its own tests, which find errors up to 1e-6 there. (Storing in a float grid comes
 /// on top.)
 inline constexpr double sum_rounding = 4e-6;
+/// The same for sums over contacts, which are formed in double: a thousand terms and a few roundings each stay below
+/// 1000 × 2⁻⁵² = 2.2e-13, and the quadrature of the reference's line integrals is good to about that as well.
+inline constexpr double contact_sum_rounding = 1e-12;
 /// What is asked of every field on float grids: error ≤ 1e-5 Σ |terms|.
 static_assert(float_rounding + sum_rounding <= 1e-5);
 
@@ -22,8 +25,9 @@ static_assert(float_rounding + sum_rounding <= 1e-5);
 struct ReferenceField {
   int components = 1;
   std::vector<double> value;
-  std::vector<double> magnitude;  ///< Σ |terms| of the numerator over the denominator
-  std::vector<double> floor;      ///< error from rounding inside the terms, absolute
+  std::vector<double> magnitude;   ///< Σ |terms| of the numerator over the denominator
+  std::vector<double> floor;       ///< error from rounding inside the terms, absolute
+  double rounding = sum_rounding;  ///< error of the sums, relative to the magnitude
 
   std::size_t index(std::size_t voxel, int component) const {
     return voxel * static_cast<std::size_t>(components) + static_cast<std::size_t>(component);
