@@ -1,0 +1,85 @@
+// What the brick kernels share, compiled once for every instruction set: include it from files that
+// hwy/foreach_target.h compiles again and again, after hwy/highway.h.
+#if defined(GRAINVDB_SPLAT_BRICKS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef GRAINVDB_SPLAT_BRICKS_INL_HPP
+#undef GRAINVDB_SPLAT_BRICKS_INL_HPP
+#else
+#define GRAINVDB_SPLAT_BRICKS_INL_HPP
+#endif
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace grainvdb {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// A brick is the block of voxels that fills a register: 2×2×(N/4), or one voxel without vectors.
+using D = hn::CappedTag<float, 16>;
+using DI = hn::RebindToSigned<D>;
+using V = hn::Vec<D>;
+constexpr D d;
+constexpr DI di;
+constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
+constexpr int brick_x = lanes >= 4 ? 2 : 1, brick_y = brick_x, brick_z = lanes / (brick_x * brick_y);
+constexpr int block = 4;  // voxels along the edge of a block, whose candidates are picked once for its bricks
+
+/// Collects the candidates whose support touches the box of voxel centres [lo, lo + extent], in their order.
+HWY_NOINLINE std::size_t pick(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z,
+                              std::size_t count, const float* lo, const float* extent, std::int32_t* HWY_RESTRICT out) {
+  const V hx = hn::Set(d, 0.5F * extent[0]), hy = hn::Set(d, 0.5F * extent[1]), hz = hn::Set(d, 0.5F * extent[2]);
+  const V cx = hn::Set(d, lo[0] + 0.5F * extent[0]), cy = hn::Set(d, lo[1] + 0.5F * extent[1]),
+          cz = hn::Set(d, lo[2] + 0.5F * extent[2]);
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+  std::size_t n = 0;
+  auto index = hn::Iota(di, 0);
+  const auto step = hn::Set(di, lanes);
+  for (std::size_t i = 0; i < count; i += lanes, index = hn::Add(index, step)) {
+    const V dx = hn::Max(hn::Sub(hn::Abs(hn::Sub(hn::Load(d, x + i), cx)), hx), zero);
+    const V dy = hn::Max(hn::Sub(hn::Abs(hn::Sub(hn::Load(d, y + i), cy)), hy), zero);
+    const V dz = hn::Max(hn::Sub(hn::Abs(hn::Sub(hn::Load(d, z + i), cz)), hz), zero);
+    const V r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+    auto near = hn::Lt(r2, one);
+    if (i + lanes > count) near = hn::And(near, hn::FirstN(d, count - i));
+    n += hn::CompressStore(index, hn::RebindMask(di, near), di, out + n);
+  }
+  return n;
+}
+
+/// sums[channel][lane] = Σ_k weights[k][lane] q[chosen[k]][channel], all sums in registers.
+template <int channels>
+HWY_NOINLINE void sum_channels(const float* HWY_RESTRICT weights, const float* HWY_RESTRICT q, std::size_t stride,
+                               const std::int32_t* HWY_RESTRICT chosen, std::size_t count, float* HWY_RESTRICT sums) {
+  V s[channels];
+#pragma GCC unroll 32
+  for (int c = 0; c < channels; ++c) s[c] = hn::Zero(d);
+  for (std::size_t k = 0; k < count; ++k) {
+    const V w = hn::Load(d, weights + k * lanes);
+    const float* HWY_RESTRICT v = q + static_cast<std::size_t>(chosen[k]) * stride;
+#pragma GCC unroll 32
+    for (int c = 0; c < channels; ++c) s[c] = hn::MulAdd(w, hn::Set(d, v[c]), s[c]);
+  }
+#pragma GCC unroll 32
+  for (int c = 0; c < channels; ++c) hn::Store(s[c], d, sums + c * lanes);
+}
+
+using Sum = void (*)(const float*, const float*, std::size_t, const std::int32_t*, std::size_t, float*);
+// Accumulators that fit the registers (16, or 32 with AVX-512) beside the weight and the broadcast.
+constexpr int widest = lanes == 16 ? 24 : 14;
+
+template <int... c>
+constexpr std::array<Sum, sizeof...(c) + 1> sums_for(std::integer_sequence<int, c...>) {
+  return {nullptr, sum_channels<c + 1>...};
+}
+constexpr auto sum_of = sums_for(std::make_integer_sequence<int, widest>());
+
+}  // namespace HWY_NAMESPACE
+}  // namespace grainvdb
+HWY_AFTER_NAMESPACE();
+
+#endif
