@@ -1,5 +1,7 @@
 #pragma once
 /// The Lucy kernel (physics eq. 9): W(r) = 105/(16 π c³) (1-q)³ (1+3q), q = r/c < 1, else 0; ∫ W dV = 1.
+#include <cmath>
+
 #include "grainvdb/box.hpp"
 
 namespace grainvdb {
@@ -12,7 +14,12 @@ class LucyKernel {
   double cutoff() const { return cutoff_; }
 
   /// W at distance² r2 [1/length³]. Evaluated in the factored form, which is never positive outside the support.
-  double value(double r2) const;
+  double value(double r2) const {
+    const double r = std::sqrt(r2) * inverse_cutoff_;
+    if (!(r < 1)) return 0;
+    const double p = 1 - r;
+    return norm_ * p * p * p * (1 + 3 * r);
+  }
 
   /// The factor f with ∇W = f r⃗ at distance² r2: f = -(1260/(16 π c⁵)) (1-q)² [1/length⁵].
   double gradient_factor(double r2) const;

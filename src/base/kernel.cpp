@@ -127,13 +127,6 @@ LucyKernel::LucyKernel(double cutoff)
     throw std::invalid_argument("the kernel cutoff must be positive and finite");
 }
 
-double LucyKernel::value(double r2) const {
-  const double q = std::sqrt(r2) * inverse_cutoff_;
-  if (!(q < 1)) return 0;
-  const double p = 1 - q;
-  return norm_ * p * p * p * (1 + 3 * q);
-}
-
 double LucyKernel::gradient_factor(double r2) const {
   const double q = std::sqrt(r2) * inverse_cutoff_;
   if (!(q < 1)) return 0;

@@ -88,6 +88,7 @@ Buckets bin_points(const Lattice& lattice, const Columns3& position, double reac
   }
 
   const std::size_t entries = unsorted.point.size();
+  if (entries > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("too many periodic images");
   Buckets b;
   b.start.push_back(0);
   if (entries == 0) return b;
@@ -97,6 +98,7 @@ Buckets bin_points(const Lattice& lattice, const Columns3& position, double reac
 
   b.point.reserve(entries);
   for (auto& column : b.index) column.reserve(entries);
+  for (auto& column : b.local) column.reserve(entries + Buckets::padding);
   for (const std::size_t e : order) {
     const Coord c{key[0][e], key[1][e], key[2][e]};
     if (b.cells.empty() || b.cells.back() != c) {
@@ -104,8 +106,12 @@ Buckets bin_points(const Lattice& lattice, const Columns3& position, double reac
       b.cells.push_back(c);
     }
     b.point.push_back(unsorted.point[e]);
-    for (int a = 0; a < 3; ++a) b.index[a].push_back(unsorted.index[a][e]);
+    for (int a = 0; a < 3; ++a) {
+      b.index[a].push_back(unsorted.index[a][e]);
+      b.local[a].push_back(static_cast<float>(b.index[a].back() - (c[a] + 3.5)));
+    }
   }
+  for (auto& column : b.local) column.resize(entries + Buckets::padding);
   b.start.push_back(entries);
   return b;
 }

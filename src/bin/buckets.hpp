@@ -1,5 +1,6 @@
 #pragma once
 /// Points sorted into the leaves of the lattice, periodic images included: what the splat reads.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -16,6 +17,9 @@ struct Buckets {
   std::vector<std::size_t> start;     ///< cells.size() + 1 offsets
   std::vector<std::uint32_t> point;   ///< index of the point that each entry is an image of
   Columns3 index;                     ///< position of each entry in index space (whole numbers are voxel centres)
+  /// The same in single precision, relative to the centre of the cell (origin + 3½); followed by `padding` zeros.
+  std::array<std::vector<float>, 3> local;
+  static constexpr std::size_t padding = 16;  ///< so that vectors may be loaded at any entry
 };
 
 /// Wraps the points along periodic axes and adds every image that lies within `reach` [length] of the stored period.

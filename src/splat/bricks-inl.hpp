@@ -14,6 +14,8 @@
 
 #include <hwy/highway.h>
 
+#include "splat/candidates.hpp"
+
 HWY_BEFORE_NAMESPACE();
 namespace grainvdb {
 namespace HWY_NAMESPACE {
@@ -29,13 +31,36 @@ constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
 constexpr int brick_x = lanes >= 4 ? 2 : 1, brick_y = brick_x, brick_z = lanes / (brick_x * brick_y);
 constexpr int block = 4;  // voxels along the edge of a block, whose candidates are picked once for its bricks
 
-/// Collects the candidates whose support touches the box of voxel centres [lo, lo + extent], in their order.
-HWY_NOINLINE std::size_t pick(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z,
-                              std::size_t count, const float* lo, const float* extent, std::int32_t* HWY_RESTRICT out) {
+/// The voxel centres of a brick, relative to the leaf's centre.
+struct Voxels {
+  V x, y, z;
+};
+HWY_INLINE Voxels brick_voxels(const VoxelBox& brick, float h) {
+  HWY_ALIGN static constexpr auto steps = [] {
+    std::array<std::array<float, lanes>, 3> at{};
+    for (int l = 0; l < lanes; ++l) {
+      at[0][static_cast<std::size_t>(l)] = static_cast<float>(l / (brick_y * brick_z)) - 3.5F;
+      at[1][static_cast<std::size_t>(l)] = static_cast<float>(l / brick_z % brick_y) - 3.5F;
+      at[2][static_cast<std::size_t>(l)] = static_cast<float>(l % brick_z) - 3.5F;
+    }
+    return at;
+  }();
+  const auto along = [&](int axis, int first) {
+    const V step = hn::LoadU(d, steps[static_cast<std::size_t>(axis)].data());
+    return hn::Mul(hn::Set(d, h), hn::Add(step, hn::Set(d, static_cast<float>(first))));
+  };
+  return {along(0, brick.x), along(1, brick.y), along(2, brick.z)};
+}
+
+/// Collects the candidates whose squared distance from the box of voxel centres [lo, lo + extent] is below `limit`, in
+/// their order.
+inline HWY_NOINLINE std::size_t pick(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z,
+                              std::size_t count, const float* lo, const float* extent, float limit,
+                              std::int32_t* HWY_RESTRICT out) {
   const V hx = hn::Set(d, 0.5F * extent[0]), hy = hn::Set(d, 0.5F * extent[1]), hz = hn::Set(d, 0.5F * extent[2]);
   const V cx = hn::Set(d, lo[0] + 0.5F * extent[0]), cy = hn::Set(d, lo[1] + 0.5F * extent[1]),
           cz = hn::Set(d, lo[2] + 0.5F * extent[2]);
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0F);
+  const V zero = hn::Zero(d), near2 = hn::Set(d, limit);
   std::size_t n = 0;
   auto index = hn::Iota(di, 0);
   const auto step = hn::Set(di, lanes);
@@ -44,7 +69,7 @@ HWY_NOINLINE std::size_t pick(const float* HWY_RESTRICT x, const float* HWY_REST
     const V dy = hn::Max(hn::Sub(hn::Abs(hn::Sub(hn::Load(d, y + i), cy)), hy), zero);
     const V dz = hn::Max(hn::Sub(hn::Abs(hn::Sub(hn::Load(d, z + i), cz)), hz), zero);
     const V r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-    auto near = hn::Lt(r2, one);
+    auto near = hn::Lt(r2, near2);
     if (i + lanes > count) near = hn::And(near, hn::FirstN(d, count - i));
     n += hn::CompressStore(index, hn::RebindMask(di, near), di, out + n);
   }

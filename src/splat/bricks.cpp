@@ -1,10 +1,7 @@
 #include "splat/bricks.hpp"
 
-#include <array>
+#include <cmath>
 #include <cstring>
-#include <utility>
-
-#include "splat/brick_scratch.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "splat/bricks.cpp"
@@ -17,77 +14,119 @@
 HWY_BEFORE_NAMESPACE();
 namespace grainvdb {
 namespace HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
+namespace {
 
 /// weights[k][lane] = (1-r)³(1+3r) of candidate chosen[k] at the brick's voxels, 0 outside the support. The factored
-/// form never turns positive outside.
-HWY_NOINLINE void weigh(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z,
-                        const std::int32_t* HWY_RESTRICT chosen, std::size_t count, V px, V py, V pz,
-                        float* HWY_RESTRICT weights) {
+/// form never turns positive outside. Returns their sum.
+HWY_NOINLINE V weigh(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z,
+                     const std::int32_t* HWY_RESTRICT chosen, std::size_t count, Voxels at,
+                     float* HWY_RESTRICT weights) {
   const V one = hn::Set(d, 1.0F), three = hn::Set(d, 3.0F);
+  V sum = hn::Zero(d);
   for (std::size_t k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(chosen[k]);
-    const V dx = hn::Sub(px, hn::Set(d, x[i])), dy = hn::Sub(py, hn::Set(d, y[i])), dz = hn::Sub(pz, hn::Set(d, z[i]));
+    const V dx = hn::Sub(at.x, hn::Set(d, x[i])), dy = hn::Sub(at.y, hn::Set(d, y[i])),
+            dz = hn::Sub(at.z, hn::Set(d, z[i]));
     const V r2 = hn::Min(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), one);
     const V r = hn::Sqrt(r2);
     const V p = hn::Sub(one, r);
-    hn::Store(hn::Mul(hn::Mul(hn::Mul(p, p), p), hn::MulAdd(three, r, one)), d, weights + k * lanes);
+    const V w = hn::Mul(hn::Mul(hn::Mul(p, p), p), hn::MulAdd(three, r, one));
+    sum = hn::Add(sum, w);
+    hn::Store(w, d, weights + k * lanes);
+  }
+  return sum;
+}
+
+/// Copies the lanes of a brick to their voxels.
+HWY_INLINE void put(const float* HWY_RESTRICT lane, const VoxelBox& brick, float* HWY_RESTRICT voxels) {
+  for (int i = 0; i < brick_x; ++i)
+    for (int j = 0; j < brick_y; ++j)
+      std::memcpy(voxels + (brick.x + i) * 64 + (brick.y + j) * 8 + brick.z, lane + (i * brick_y + j) * brick_z,
+                  brick_z * sizeof(float));
+}
+
+void SumBrick(const LeafSplat& leaf, const VoxelBox& brick, LeafSums& out) {
+  const float h = leaf.voxel;
+  const Picked& near = out.near;
+  const float lo[3] = {h * (static_cast<float>(brick.x) - 3.5F), h * (static_cast<float>(brick.y) - 3.5F),
+                       h * (static_cast<float>(brick.z) - 3.5F)};
+  const float extent[3] = {h * (brick_x - 1), h * (brick_y - 1), h * (brick_z - 1)};
+  std::int32_t* const chosen = out.chosen.data();
+  const std::size_t m = pick(near.x.data(), near.y.data(), near.z.data(), near.count, lo, extent, 1.0F, chosen);
+  HWY_ALIGN float sums[widest * lanes];
+  hn::Store(
+      weigh(near.x.data(), near.y.data(), near.z.data(), chosen, m, brick_voxels(brick, h), out.weights.data()), d,
+      sums);
+  put(sums, brick, out.plain.data());
+  for (int first = 0; first < leaf.channels; first += widest) {
+    const int now = leaf.channels - first < widest ? leaf.channels - first : widest;
+    sum_of[static_cast<std::size_t>(now)](out.weights.data(), out.values.data() + first, leaf.stride, chosen, m, sums);
+    for (int c = 0; c < now; ++c) put(sums + c * lanes, brick, out.sums.data() + (first + c) * leaf_size);
   }
 }
 
-void SplatLeaf(const LeafSplat& leaf, BrickScratch& scratch, float* HWY_RESTRICT out) {
-  scratch.reserve(leaf.count, leaf.stride);
-  const float h = leaf.voxel;
-  HWY_ALIGN float offset[3][lanes];
-  for (int l = 0; l < lanes; ++l) {
-    offset[0][l] = h * static_cast<float>(l / (brick_y * brick_z));
-    offset[1][l] = h * static_cast<float>(l / brick_z % brick_y);
-    offset[2][l] = h * static_cast<float>(l % brick_z);
-  }
-  const V ox = hn::Load(d, offset[0]), oy = hn::Load(d, offset[1]), oz = hn::Load(d, offset[2]);
-  const float block_extent[3] = {h * (block - 1), h * (block - 1), h * (block - 1)};
-  const float brick_extent[3] = {h * (brick_x - 1), h * (brick_y - 1), h * (brick_z - 1)};
-  HWY_ALIGN float sums[widest * lanes];
+bool any_active(const LeafMask& active, const VoxelBox& box, int nx, int ny, int nz) {
+  std::uint64_t row = 0;
+  for (int j = 0; j < ny; ++j) row |= ((std::uint64_t{1} << nz) - 1) << ((box.y + j) * 8 + box.z);
+  std::uint64_t any = 0;
+  for (int i = 0; i < nx; ++i) any |= active.words[static_cast<std::size_t>(box.x + i)] & row;
+  return any != 0;
+}
 
+void SplatLeaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
+  out.sums.room(static_cast<std::size_t>(leaf.channels) * leaf_size);
+  out.plain.room(leaf_size);
+  const LeafCandidates& all = *leaf.candidates;
   for (int bx = 0; bx < 8; bx += block)
     for (int by = 0; by < 8; by += block)
       for (int bz = 0; bz < 8; bz += block) {
-        const float lo[3] = {h * static_cast<float>(bx), h * static_cast<float>(by), h * static_cast<float>(bz)};
-        const std::size_t n = pick(leaf.x, leaf.y, leaf.z, leaf.count, lo, block_extent, scratch.chosen.get());
-        for (std::size_t k = 0; k < n; ++k) {
-          const auto i = static_cast<std::size_t>(scratch.chosen[k]);
-          scratch.x[k] = leaf.x[i];
-          scratch.y[k] = leaf.y[i];
-          scratch.z[k] = leaf.z[i];
-          std::memcpy(scratch.q.get() + k * leaf.stride, leaf.q + i * leaf.stride, leaf.stride * sizeof(float));
-        }
+        if (!any_active(active, {bx, by, bz}, block, block, block)) continue;
+        pick_near(all.x.data(), all.y.data(), all.z.data(), all.count, {bx, by, bz, block}, leaf.voxel, out.near);
+        float* const values = out.values.room(out.near.count * leaf.stride);
+        for (std::size_t k = 0; k < out.near.count; ++k)
+          std::memcpy(values + k * leaf.stride, leaf.values + static_cast<std::size_t>(out.near.at[k]) * leaf.stride,
+                      leaf.stride * sizeof(float));
+        out.chosen.room(out.near.count);
+        out.weights.room(out.near.count * lanes);
         for (int x = bx; x < bx + block; x += brick_x)
           for (int y = by; y < by + block; y += brick_y)
-            for (int z = bz; z < bz + block; z += brick_z) {
-              const float at[3] = {h * static_cast<float>(x), h * static_cast<float>(y), h * static_cast<float>(z)};
-              const std::size_t m =
-                  pick(scratch.x.get(), scratch.y.get(), scratch.z.get(), n, at, brick_extent, scratch.in_brick.get());
-              weigh(scratch.x.get(), scratch.y.get(), scratch.z.get(), scratch.in_brick.get(), m,
-                    hn::Add(ox, hn::Set(d, at[0])), hn::Add(oy, hn::Set(d, at[1])), hn::Add(oz, hn::Set(d, at[2])),
-                    scratch.weights.get());
-              for (int first = 0; first < leaf.channels; first += widest) {
-                const int now = leaf.channels - first < widest ? leaf.channels - first : widest;
-                sum_of[static_cast<std::size_t>(now)](scratch.weights.get(), scratch.q.get() + first, leaf.stride,
-                                                      scratch.in_brick.get(), m, sums);
-                for (int c = 0; c < now; ++c)
-                  for (int i = 0; i < brick_x; ++i)
-                    for (int j = 0; j < brick_y; ++j)
-                      std::memcpy(out + (first + c) * 512 + (x + i) * 64 + (y + j) * 8 + z,
-                                  sums + c * lanes + (i * brick_y + j) * brick_z, brick_z * sizeof(float));
-              }
-            }
+            for (int z = bz; z < bz + block; z += brick_z)
+              if (any_active(active, {x, y, z}, brick_x, brick_y, brick_z)) SumBrick(leaf, {x, y, z}, out);
       }
+}
+
+void ScaleSums(const float* HWY_RESTRICT sum, double unit, const float* HWY_RESTRICT weight, double reference,
+               double* HWY_RESTRICT to) {
+  const hn::CappedTag<double, 8> d8;
+  const hn::Rebind<float, decltype(d8)> f8;
+  const auto scale = hn::Set(d8, unit), mean = hn::Set(d8, reference);
+  for (std::size_t v = 0; v < leaf_size; v += hn::Lanes(d8)) {
+    const auto about = hn::Mul(scale, hn::PromoteTo(d8, hn::LoadU(f8, sum + v)));
+    hn::StoreU(hn::MulAdd(mean, hn::PromoteTo(d8, hn::LoadU(f8, weight + v)), about), d8, to + v);
+  }
+}
+
+LeafMask FaintVoxels(const float* sum, float least, const float* plain, float rim, float enough,
+                     const LeafMask& active) {
+  const V small = hn::Set(d, least), edge = hn::Set(d, rim), plenty = hn::Set(d, enough);
+  LeafMask faint;
+  for (int v = 0; v < leaf_size; v += lanes) {
+    const V p = hn::LoadU(d, plain + v);
+    const auto few = hn::And(hn::Lt(hn::Abs(hn::LoadU(d, sum + v)), small), hn::Lt(p, plenty));
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(d, hn::Or(hn::Lt(p, edge), few), bytes);
+    const std::uint64_t bits = bytes[0] | static_cast<unsigned>(bytes[1]) << 8U;
+    faint.words[static_cast<std::size_t>(v / 64)] |= bits << (v % 64);
+  }
+  for (std::size_t w = 0; w < faint.words.size(); ++w) faint.words[w] &= active.words[w];
+  return faint;
 }
 
 const char* TargetName() {
   return hwy::TargetName(HWY_TARGET);
 }
 
+}  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace grainvdb
 HWY_AFTER_NAMESPACE();
@@ -95,9 +134,23 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace grainvdb {
 HWY_EXPORT(SplatLeaf);
+HWY_EXPORT(ScaleSums);
+HWY_EXPORT(FaintVoxels);
 HWY_EXPORT(TargetName);
-void splat_leaf(const LeafSplat& leaf, BrickScratch& scratch, float* out) {
-  HWY_DYNAMIC_DISPATCH(SplatLeaf)(leaf, scratch, out);
+void splat_leaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
+  HWY_DYNAMIC_DISPATCH(SplatLeaf)(leaf, active, out);
+}
+void scale_sums(const float* sum, double unit, const float* weight, double reference, double* to) {
+  HWY_DYNAMIC_DISPATCH(ScaleSums)(sum, unit, weight, reference, to);
+}
+LeafMask faint_voxels(const float* sum, float least, const float* plain, float rim, float enough,
+                      const LeafMask& active) {
+  return HWY_DYNAMIC_DISPATCH(FaintVoxels)(sum, least, plain, rim, enough, active);
+}
+std::size_t count_below(const float* values, std::size_t stride, std::size_t count, float limit) {
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < count; ++k) n += std::abs(values[k * stride]) < limit ? 1U : 0U;
+  return n;
 }
 const char* splat_target() {
   return HWY_DYNAMIC_DISPATCH(TargetName)();

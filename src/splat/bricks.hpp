@@ -3,26 +3,46 @@
 /// compiled for every instruction set the library supports and chosen at run time.
 #include <cstddef>
 #include <cstdint>
+#include <vector>
+
+#include "grainvdb/topology.hpp"
+#include "splat/candidates.hpp"
+#include "splat/grow.hpp"
 
 namespace grainvdb {
 
-/// What a leaf's sums are made of. Candidates are the entries whose support can touch the leaf; coordinates are in
-/// units of the cutoff, relative to the leaf's first voxel.
+/// What a leaf's sums are made of.
 struct LeafSplat {
-  const float* x = nullptr;
-  const float* y = nullptr;
-  const float* z = nullptr;
-  const float* q = nullptr;  ///< values of the candidates, [candidate][stride]
-  std::size_t count = 0;     ///< of candidates
-  std::size_t stride = 0;    ///< of q, at least `channels`
+  const LeafCandidates* candidates = nullptr;
+  const float* values = nullptr;  ///< of the candidates, [candidate][stride]
+  std::size_t stride = 0;         ///< of the values, at least `channels`
   int channels = 0;
   float voxel = 0;  ///< edge of a voxel in units of the cutoff
 };
 
-/// out[channel][offset] = Σ q (1-r)³(1+3r) over the candidates, for the 512 voxels of the leaf. `scratch` is reused
-/// from leaf to leaf.
-class BrickScratch;
-void splat_leaf(const LeafSplat& leaf, BrickScratch& scratch, float* out);
+/// Sums of one leaf, and what is needed on the way; reused from leaf to leaf.
+struct LeafSums {
+  Grow<float> sums;   ///< [channel][offset]: Σ q (1-r)³(1+3r) over the candidates
+  Grow<float> plain;  ///< [offset]: Σ (1-r)³(1+3r)
+
+  Picked near;                ///< candidates of a block of voxels
+  Grow<float> values;         ///< their values
+  Grow<std::int32_t> chosen;  ///< those of them that reach a brick
+  Grow<float> weights;        ///< [candidate of the brick][lane]
+};
+
+/// Fills sums and plain for the bricks that hold an active voxel; those of other bricks are not touched.
+void splat_leaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out);
+
+/// to[offset] = unit · sum[offset] + reference · weight[offset], for the leaf's voxels.
+void scale_sums(const float* sum, double unit, const float* weight, double reference, double* to);
+
+/// The active voxels where plain < rim, or |sum| < least and plain < enough.
+LeafMask faint_voxels(const float* sum, float least, const float* plain, float rim, float enough,
+                      const LeafMask& active);
+
+/// How many of `count` values, `stride` apart, are smaller than `limit` in magnitude.
+std::size_t count_below(const float* values, std::size_t stride, std::size_t count, float limit);
 
 /// The instruction set that splat_leaf uses on this machine.
 const char* splat_target();

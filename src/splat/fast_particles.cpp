@@ -1,50 +1,48 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include "base/parallel.hpp"
-#include "splat/brick_scratch.hpp"
 #include "splat/bricks.hpp"
+#include "splat/candidates.hpp"
 #include "splat/gather.hpp"
+#include "splat/records.hpp"
 #include "splat/splat.hpp"
 
 namespace grainvdb {
 namespace {
 
-// Coordinates in single precision move the rim of a support by δ = 2e-7 c, which changes W by a factor 3 δ/(1-r): more
-// than 1e-5 for the terms with 1-r < 0.06, each of which is less than 1e-3 W(0). They matter only where a sum has
-// little else, and there the voxel is summed again in double:
+// Positions in single precision move the rim of a support by δ = 2e-7 c, which changes W by a factor 3 δ/(1-r): more
+// than 1e-5 for the terms with 1-r < 0.06, each of which is less than 8.6e-4 W(0). At most 20 or so lie so near the rim
+// of one voxel. They matter only where a sum has little else, and there the voxel is summed again in double:
 
 /// where the sum of W/W(0) is less than this (the outermost voxels of the material),
-constexpr double rim = 0.2;
+constexpr double rim = 0.02;
 /// and where the sum of a channel is less than this part of W(0) times the largest |q| of the leaf (its larger values
-/// are far away).
+/// are far away), unless the candidates with small values are too few to be most of what the voxel sees.
 constexpr double faint = 3e-3;
+/// A value is small below this part of the largest. Where Σ W/W(0) exceeds their number n, Σ |q| W is at least
+/// small (Σ W - n W(0)) max |q|.
+constexpr double small = 1e-2;
 
-/// One leaf's candidates and sums, reused from leaf to leaf.
+/// A channel of a voxel that is summed again.
+struct Again {
+  std::size_t channel, weight;
+  double sum = 0, weight_sum = 0;
+};
+
 struct LeafWork {
-  std::vector<std::size_t> entries;
-  hwy::AlignedFreeUniquePtr<float[]> x, y, z;
-  std::vector<float> q;
-  std::vector<double> reference;
-  std::vector<float> least;  // below which a channel's sum is faint
-  std::vector<float> sums;
-  std::vector<std::size_t> again;  // channels of a voxel to be summed in double
-  std::size_t capacity = 0;
-  BrickScratch scratch;
-
-  void reserve(std::size_t candidates) {
-    const std::size_t n = candidates + 32;  // vectors are loaded past the end
-    if (n <= capacity) return;
-    capacity = n + n / 2;
-    x = hwy::AllocateAligned<float>(capacity);
-    y = hwy::AllocateAligned<float>(capacity);
-    z = hwy::AllocateAligned<float>(capacity);
-  }
+  LeafCandidates candidates;
+  Records::OfLeaf records;
+  LeafSums sums;
+  Picked near_block, near_voxel;
+  std::vector<LeafMask> faint;  // of each channel
+  std::vector<Again> again;
+  std::vector<double> values;  // [channel][offset]
 };
 
 class FastSplat {
@@ -54,157 +52,157 @@ class FastSplat {
       : lattice_(lattice),
         kernel_(kernel),
         buckets_(buckets),
-        q_(q),
         weight_of_(weight_of.begin(), weight_of.end()),
         channels_(weight_of.size()),
-        scale_(weight_of.size(), 0.0),
-        cutoff_(kernel.cutoff() / lattice.voxel()) {
-    for (std::size_t n = 0; n < q.size(); ++n) {
-      double& scale = scale_[n % channels_];
-      scale = std::max(scale, std::abs(q[n]));
-    }
-    for (double& scale : scale_)
-      if (scale == 0) scale = 1;
-  }
+        cutoff_(kernel.cutoff() / lattice.voxel()),
+        records_(buckets, q, weight_of) {}
 
-  void run(std::size_t leaf, LeafBuffers& result, LeafWork& work) const {
-    const Topology& topology = *result.topology();
-    const Coord origin = topology.origin(leaf);
-    collect(origin, work);
-    choose_references(work);
-    fill_values(work);
-    work.sums.resize((channels_ + 1) * leaf_size);
-    const std::size_t stride = channels_ + 1;
-    splat_leaf({work.x.get(), work.y.get(), work.z.get(), work.q.data(), work.entries.size(), stride,
-                static_cast<int>(stride), static_cast<float>(1 / cutoff_)},
-               work.scratch, work.sums.data());
-    store(topology, leaf, work, result);
+  /// The sums of one leaf, [channel][offset], 0 where inactive.
+  const double* run(const Coord& origin, const LeafMask& active, LeafWork& work) const {
+    gather_candidates(buckets_, origin, cutoff_, work.candidates);
+    records_.gather(origin, work.candidates, work.records);
+    splat_leaf({&work.candidates, work.records.values.data(), records_.stride(), static_cast<int>(channels_), voxel()},
+               active, work.sums);
+    scale(work);
+    clear_inactive(active, work);
+    sum_again(origin, active, work);
+    return work.values.data();
   }
 
  private:
-  void collect(const Coord& origin, LeafWork& work) const {
-    work.entries.clear();
-    const double reach2 = cutoff_ * cutoff_;
-    for_each_entry(buckets_, origin, cutoff_, [&](std::size_t e) {
-      double r2 = 0;
-      for (int a = 0; a < 3; ++a) {
-        const double beyond = std::max(std::abs(buckets_.index[a][e] - origin[a] - 3.5) - 3.5, 0.0);
-        r2 += beyond * beyond;
-      }
-      if (r2 < reach2) work.entries.push_back(e);
-    });
-    work.reserve(work.entries.size());
-    for (std::size_t k = 0; k < work.entries.size(); ++k) {
-      const std::size_t e = work.entries[k];
-      work.x[k] = static_cast<float>((buckets_.index[0][e] - origin.x) / cutoff_);
-      work.y[k] = static_cast<float>((buckets_.index[1][e] - origin.y) / cutoff_);
-      work.z[k] = static_cast<float>((buckets_.index[2][e] - origin.z) / cutoff_);
-    }
+  float voxel() const { return static_cast<float>(1 / cutoff_); }
+  std::size_t weight(std::size_t channel) const {
+    return weight_of_[channel] < 0 ? channel : static_cast<std::size_t>(weight_of_[channel]);
+  }
+  const float* sum(const LeafWork& work, std::size_t channel) const {
+    return work.sums.sums.data() + channel * leaf_size;
   }
 
-  const double* values(std::size_t entry) const { return q_.data() + buckets_.point[entry] * channels_; }
-
-  /// For channels w q: the mean of q over the candidates if all are within half of it, else 0. So |q| is at least half
-  /// the reference wherever there is one, and the rounding of w (q - r) stays small against |w q|.
-  void choose_references(LeafWork& work) const {
-    work.reference.assign(channels_, 0.0);
-    for (std::size_t c = 0; c < channels_; ++c) {
-      if (weight_of_[c] < 0) continue;
-      const auto weight = static_cast<std::size_t>(weight_of_[c]);
-      double above = 0;
-      double below = 0;
-      for (const std::size_t e : work.entries) {
-        above += values(e)[c];
-        below += values(e)[weight];
-      }
-      if (!(below > 0)) continue;
-      const double mean = above / below;
-      const bool close = std::all_of(work.entries.begin(), work.entries.end(), [&](std::size_t e) {
-        const double w = values(e)[weight];
-        return std::abs(values(e)[c] - mean * w) <= 0.5 * std::abs(mean) * w;
-      });
-      if (close) work.reference[c] = mean;
-    }
-  }
-
-  void fill_values(LeafWork& work) const {
-    const std::size_t stride = channels_ + 1;
-    work.q.resize(work.entries.size() * stride);
-    work.least.assign(channels_, 0.0F);
-    float* to = work.q.data();
-    for (const std::size_t e : work.entries) {
-      const double* v = values(e);
-      for (std::size_t c = 0; c < channels_; ++c) {
-        const double about = weight_of_[c] < 0 ? v[c] : v[c] - work.reference[c] * v[weight_of_[c]];
-        to[c] = static_cast<float>(about / scale_[c]);
-        work.least[c] = std::max(work.least[c], std::abs(to[c]));
-      }
-      to[channels_] = 1;
-      to += stride;
-    }
-    // Sums about a reference are small against the reference, whose own sum is right.
-    for (std::size_t c = 0; c < channels_; ++c)
-      work.least[c] *= work.reference[c] != 0 ? 0.0F : static_cast<float>(faint);
-  }
-
-  void store(const Topology& topology, std::size_t leaf, LeafWork& work, LeafBuffers& result) const {
+  void scale(LeafWork& work) const {
+    work.values.resize(channels_ * leaf_size);
     const double peak = kernel_.value(0);
-    const float* plain = work.sums.data() + channels_ * leaf_size;
     for (std::size_t c = 0; c < channels_; ++c) {
-      const auto w = weight_of_[c] < 0 ? c : static_cast<std::size_t>(weight_of_[c]);
-      const float* sum = work.sums.data() + c * leaf_size;
-      const float* weight = work.sums.data() + w * leaf_size;
-      const double unit = peak * scale_[c];
-      const double reference = peak * scale_[w] * work.reference[c];
-      double* to = result.block(leaf, static_cast<int>(c));
-      topology.mask(leaf).for_each([&](int v) { to[v] = unit * sum[v] + reference * weight[v]; });
+      const std::size_t w = weight(c);
+      scale_sums(sum(work, c), peak * records_.scale(c), sum(work, w),
+                 peak * records_.scale(w) * work.records.reference[c], work.values.data() + c * leaf_size);
     }
-    // Each channel is judged by itself, so that a sum does not depend on which others are asked for.
-    topology.mask(leaf).for_each([&](int v) {
-      work.again.clear();
-      for (std::size_t c = 0; c < channels_; ++c)
-        if (plain[v] < rim || std::abs(work.sums[c * leaf_size + static_cast<std::size_t>(v)]) < work.least[c])
-          work.again.push_back(c);
-      if (!work.again.empty()) sum_in_double(topology.origin(leaf), leaf, v, work, result);
+  }
+
+  void clear_inactive(const LeafMask& active, LeafWork& work) const {
+    LeafMask inactive;
+    for (std::size_t i = 0; i < inactive.words.size(); ++i) inactive.words[i] = ~active.words[i];
+    inactive.for_each([&](int v) {
+      for (std::size_t c = 0; c < channels_; ++c) work.values[c * leaf_size + static_cast<std::size_t>(v)] = 0;
     });
   }
 
-  void sum_in_double(const Coord& origin, std::size_t leaf, int offset, const LeafWork& work,
-                     LeafBuffers& result) const {
+  /// The voxels where a channel's sum cannot be trusted. Each channel is judged by itself, so that a sum does not
+  /// depend on which others are asked for.
+  LeafMask faint_of(std::size_t channel, const LeafMask& active, const LeafWork& work) const {
+    // Sums about a reference are small against the reference, whose own sum is right.
+    const bool shifted = work.records.reference[channel] != 0;
+    const float largest = work.records.largest[channel];
+    const float least = shifted ? 0.0F : static_cast<float>(faint) * largest;
+    const auto where = [&](float enough) {
+      return faint_voxels(sum(work, channel), least, work.sums.plain.data(), static_cast<float>(rim), enough, active);
+    };
+    const LeafMask all = where(std::numeric_limits<float>::infinity());
+    if (shifted || all.none()) return all;
+    const std::size_t few = count_below(work.records.values.data() + channel, records_.stride(), work.candidates.count,
+                                        static_cast<float>(small) * largest);
+    return where(static_cast<float>(few) + static_cast<float>(faint / small));
+  }
+
+  void sum_again(const Coord& origin, const LeafMask& active, LeafWork& work) const {
+    LeafMask any;
+    work.faint.resize(channels_);
+    for (std::size_t c = 0; c < channels_; ++c) {
+      work.faint[c] = faint_of(c, active, work);
+      any |= work.faint[c];
+    }
+    if (any.none()) return;
+    const LeafCandidates& all = work.candidates;
+    for (int x = 0; x < leaf_edge; x += 4)
+      for (int y = 0; y < leaf_edge; y += 4)
+        for (int z = 0; z < leaf_edge; z += 4) {
+          const VoxelBox block{x, y, z, 4};
+          bool begun = false;
+          for_each_voxel_of(block, any, [&](const VoxelBox& v, int offset) {
+            if (!begun)
+              pick_near(all.x.data(), all.y.data(), all.z.data(), all.count, block, voxel(), work.near_block);
+            begun = true;
+            pick_near(work.near_block.x.data(), work.near_block.y.data(), work.near_block.z.data(),
+                      work.near_block.count, v, voxel(), work.near_voxel);
+            sum_in_double(voxel_at(origin, offset), static_cast<std::size_t>(offset), work);
+          });
+        }
+  }
+
+  template <class F>
+  static void for_each_voxel_of(const VoxelBox& box, const LeafMask& mask, const F& f) {
+    for (int x = box.x; x < box.x + box.edge; ++x)
+      for (int y = box.y; y < box.y + box.edge; ++y)
+        for (int z = box.z; z < box.z + box.edge; ++z)
+          if (const int offset = (x << 6) | (y << 3) | z; mask.test(offset)) f({x, y, z, 1}, offset);
+  }
+
+  /// Positions in double; the values in single precision are exact enough.
+  void sum_in_double(const Coord& at, std::size_t offset, LeafWork& work) const {
+    work.again.clear();
+    for (std::size_t c = 0; c < channels_; ++c)
+      if (work.faint[c].test(static_cast<int>(offset))) work.again.push_back({c, weight(c)});
     const double h = lattice_.voxel();
-    const Coord at = voxel_at(origin, offset);
-    for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] = 0;
-    for (const std::size_t e : work.entries) {
+    for (std::size_t k = 0; k < work.near_voxel.count; ++k) {
+      const auto in_block = static_cast<std::size_t>(work.near_voxel.at[k]);
+      const auto in_leaf = static_cast<std::size_t>(work.near_block.at[in_block]);
+      const std::size_t e = work.candidates.entry[in_leaf];
       double r2 = 0;
       for (int a = 0; a < 3; ++a) {
         const double d = (at[a] - buckets_.index[a][e]) * h;
         r2 += d * d;
       }
       const double w = kernel_.value(r2);
-      if (w > 0)
-        for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] += values(e)[c] * w;
+      const float* q = work.records.values.data() + in_leaf * records_.stride();
+      for (Again& a : work.again) {
+        a.sum += w * q[a.channel];
+        a.weight_sum += w * q[a.weight];
+      }
     }
+    for (const Again& a : work.again)
+      work.values[a.channel * leaf_size + offset] =
+          records_.scale(a.channel) * a.sum +
+          records_.scale(a.weight) * work.records.reference[a.channel] * a.weight_sum;
   }
 
   const Lattice& lattice_;
   const LucyKernel& kernel_;
   const Buckets& buckets_;
-  std::span<const double> q_;
   std::vector<int> weight_of_;
   std::size_t channels_;
-  std::vector<double> scale_;  ///< largest |q| of each channel: keeps single precision in its range whatever the units
-  double cutoff_;              ///< in voxels
+  double cutoff_;  ///< in voxels
+  Records records_;
 };
 
 }  // namespace
+
+void splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
+                          const Topology& topology, std::span<const double> q, std::span<const int> weight_of,
+                          const LeafConsumer& consume) {
+  const FastSplat splat(lattice, kernel, buckets, q, weight_of);
+  tbb::enumerable_thread_specific<LeafWork> work;
+  parallel_for(topology.leaf_count(), [&](std::size_t leaf) {
+    consume(leaf, splat.run(topology.origin(leaf), topology.mask(leaf), work.local()));
+  });
+}
 
 LeafBuffers splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
                                  std::shared_ptr<const Topology> topology, std::span<const double> q,
                                  std::span<const int> weight_of) {
   LeafBuffers result(std::move(topology), static_cast<int>(weight_of.size()));
-  const FastSplat splat(lattice, kernel, buckets, q, weight_of);
-  tbb::enumerable_thread_specific<LeafWork> work;
-  parallel_for(result.topology()->leaf_count(), [&](std::size_t leaf) { splat.run(leaf, result, work.local()); });
+  splat_particles_fast(lattice, kernel, buckets, *result.topology(), q, weight_of,
+                       [&](std::size_t leaf, const double* values) {
+                         std::copy_n(values, weight_of.size() * leaf_size, result.block(leaf, 0));
+                       });
   return result;
 }
 

@@ -28,10 +28,10 @@ struct LeafWindow {
 /// ascending.
 std::vector<Coord> leaves_in_reach(const Lattice& lattice, const Buckets& buckets, double reach);
 
-/// Calls f(entry) for the entries of all cells that a sphere of radius `reach` (in voxels) about a voxel of the leaf
-/// can touch: cells in ascending order, in each the points in ascending order.
+/// Calls f(cell) for all cells that a sphere of radius `reach` (in voxels) about a voxel of the leaf can touch, in
+/// ascending order.
 template <class F>
-void for_each_entry(const Buckets& buckets, const Coord& leaf, double reach, F&& f) {
+void for_each_cell(const Buckets& buckets, const Coord& leaf, double reach, F&& f) {
   // A cell holds index positions in [origin - ½, origin + 7½).
   std::array<std::int32_t, 3> low{};
   std::array<std::int32_t, 3> high{};
@@ -43,11 +43,17 @@ void for_each_entry(const Buckets& buckets, const Coord& leaf, double reach, F&&
   for (std::int32_t x = low[0]; x <= high[0]; x += leaf_edge)
     for (std::int32_t y = low[1]; y <= high[1]; y += leaf_edge) {
       from = std::lower_bound(from, buckets.cells.end(), Coord{x, y, low[2]});
-      for (; from != buckets.cells.end() && from->x == x && from->y == y && from->z <= high[2]; ++from) {
-        const auto cell = static_cast<std::size_t>(from - buckets.cells.begin());
-        for (std::size_t e = buckets.start[cell]; e < buckets.start[cell + 1]; ++e) f(e);
-      }
+      for (; from != buckets.cells.end() && from->x == x && from->y == y && from->z <= high[2]; ++from)
+        f(static_cast<std::size_t>(from - buckets.cells.begin()));
     }
+}
+
+/// Calls f(entry) for the entries of those cells, in each the points in ascending order.
+template <class F>
+void for_each_entry(const Buckets& buckets, const Coord& leaf, double reach, F&& f) {
+  for_each_cell(buckets, leaf, reach, [&](std::size_t cell) {
+    for (std::size_t e = buckets.start[cell]; e < buckets.start[cell + 1]; ++e) f(e);
+  });
 }
 
 /// Calls f(offset, d) for the voxels of the window within `reach` (in voxels) of index position u, in ascending order;

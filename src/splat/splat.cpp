@@ -78,16 +78,6 @@ class BranchGather {
 
 }  // namespace
 
-std::shared_ptr<const Topology> particle_topology(const Lattice& lattice, const LucyKernel& kernel,
-                                                  const Buckets& buckets) {
-  const double h = lattice.voxel();
-  const double reach = kernel.cutoff() / h;
-  return reached_voxels(lattice, buckets, reach, [&](std::size_t entry, const LeafWindow& window, auto&& f) {
-    for_each_voxel(window, entry_index(buckets, entry), reach,
-                   [&](int offset, const Vec3& d) { f(offset, [&] { return kernel.value(distance2(d, h)); }); });
-  });
-}
-
 LeafBuffers splat_particles(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
                             std::shared_ptr<const Topology> topology, std::span<const double> q, int channels) {
   const double h = lattice.voxel();

@@ -1,6 +1,8 @@
 #pragma once
 /// The splat: a bucketed frame in, channel leaf buffers out. Every leaf is written by one task that adds its terms in a
 /// fixed order, so the result has the same bytes for any number of threads.
+#include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -26,6 +28,15 @@ LeafBuffers splat_particles(const Lattice& lattice, const LucyKernel& kernel, co
 LeafBuffers splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
                                  std::shared_ptr<const Topology> topology, std::span<const double> q,
                                  std::span<const int> weight_of);
+
+/// Takes the sums of one leaf, laid out [channel][offset], 0 where inactive; called once per leaf of the topology, for
+/// different leaves at the same time.
+using LeafConsumer = std::function<void(std::size_t leaf, const double* values)>;
+
+/// The same sums, handed over leaf by leaf while they are in the cache, with no buffer for all of them.
+void splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
+                          const Topology& topology, std::span<const double> q, std::span<const int> weight_of,
+                          const LeafConsumer& consume);
 
 /// Σ_α q_α ∂_j W(x - x_α): channel 3 v + j for value v and axis j. `q` is laid out [point][value].
 LeafBuffers splat_particle_gradients(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,

@@ -1,0 +1,56 @@
+#include <tbb/enumerable_thread_specific.h>
+
+#include "base/parallel.hpp"
+#include "splat/candidates.hpp"
+#include "splat/gather.hpp"
+#include "splat/splat.hpp"
+
+namespace grainvdb {
+namespace {
+
+struct LeafWork {
+  LeafCandidates candidates;
+  Picked near;
+};
+
+/// Whether W > 0 at a voxel for any candidate, in double.
+bool reached(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets, const LeafCandidates& candidates,
+             const Coord& voxel) {
+  for (std::size_t k = 0; k < candidates.count; ++k) {
+    double r2 = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = (voxel[a] - buckets.index[a][candidates.entry[k]]) * lattice.voxel();
+      r2 += d * d;
+    }
+    if (kernel.value(r2) > 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::shared_ptr<const Topology> particle_topology(const Lattice& lattice, const LucyKernel& kernel,
+                                                  const Buckets& buckets) {
+  const double cutoff = kernel.cutoff() / lattice.voxel();
+  std::vector<Coord> leaves = leaves_in_reach(lattice, buckets, cutoff);
+  std::vector<LeafMask> masks(leaves.size());
+  tbb::enumerable_thread_specific<LeafWork> works;
+  parallel_for(leaves.size(), [&](std::size_t l) {
+    LeafWork& work = works.local();
+    gather_candidates(buckets, leaves[l], cutoff, work.candidates);
+    LeafMask inside;
+    LeafMask perhaps;
+    cover(work.candidates, static_cast<float>(1 / cutoff), work.near, inside, perhaps);
+    const LeafMask stored = LeafWindow(lattice, leaves[l]).mask();
+    for (std::size_t w = 0; w < stored.words.size(); ++w) {
+      masks[l].words[w] = inside.words[w] & stored.words[w];
+      perhaps.words[w] &= stored.words[w] & ~inside.words[w];
+    }
+    perhaps.for_each([&](int v) {
+      if (reached(lattice, kernel, buckets, work.candidates, voxel_at(leaves[l], v))) masks[l].set(v);
+    });
+  });
+  return std::make_shared<const Topology>(std::move(leaves), std::move(masks));
+}
+
+}  // namespace grainvdb
