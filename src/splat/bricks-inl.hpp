@@ -52,26 +52,33 @@ HWY_INLINE Voxels brick_voxels(const VoxelBox& brick, float h) {
   return {along(0, brick.x), along(1, brick.y), along(2, brick.z)};
 }
 
-/// Collects the candidates whose squared distance from the box of voxel centres [lo, lo + extent] is below `limit`, in
-/// their order.
-inline HWY_NOINLINE std::size_t pick(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z,
-                              std::size_t count, const float* lo, const float* extent, float limit,
-                              std::int32_t* HWY_RESTRICT out) {
-  const V hx = hn::Set(d, 0.5F * extent[0]), hy = hn::Set(d, 0.5F * extent[1]), hz = hn::Set(d, 0.5F * extent[2]);
-  const V cx = hn::Set(d, lo[0] + 0.5F * extent[0]), cy = hn::Set(d, lo[1] + 0.5F * extent[1]),
-          cz = hn::Set(d, lo[2] + 0.5F * extent[2]);
-  const V zero = hn::Zero(d), near2 = hn::Set(d, limit);
+/// The box of the centres of some voxels, and the squared distance from it below which candidates are picked.
+struct BoxTest {
+  float middle[3];
+  float half[3];
+  float limit;
+};
+
+/// Which of the first `count` lanes pass.
+HWY_INLINE hn::Mask<D> near_box(const Voxels& v, const BoxTest& box, std::size_t count) {
+  const auto beyond = [&](V x, int axis) {
+    return hn::Max(hn::Sub(hn::Abs(hn::Sub(x, hn::Set(d, box.middle[axis]))), hn::Set(d, box.half[axis])), hn::Zero(d));
+  };
+  const V dx = beyond(v.x, 0), dy = beyond(v.y, 1), dz = beyond(v.z, 2);
+  const auto near = hn::Lt(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), hn::Set(d, box.limit));
+  return count < lanes ? hn::And(near, hn::FirstN(d, count)) : near;
+}
+
+/// Collects the places of the candidates that pass, in their order.
+inline HWY_NOINLINE std::size_t pick(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
+                                     const float* HWY_RESTRICT z, std::size_t count, const BoxTest& box,
+                                     std::int32_t* HWY_RESTRICT out) {
   std::size_t n = 0;
-  auto index = hn::Iota(di, 0);
+  auto place = hn::Iota(di, 0);
   const auto step = hn::Set(di, lanes);
-  for (std::size_t i = 0; i < count; i += lanes, index = hn::Add(index, step)) {
-    const V dx = hn::Max(hn::Sub(hn::Abs(hn::Sub(hn::Load(d, x + i), cx)), hx), zero);
-    const V dy = hn::Max(hn::Sub(hn::Abs(hn::Sub(hn::Load(d, y + i), cy)), hy), zero);
-    const V dz = hn::Max(hn::Sub(hn::Abs(hn::Sub(hn::Load(d, z + i), cz)), hz), zero);
-    const V r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-    auto near = hn::Lt(r2, near2);
-    if (i + lanes > count) near = hn::And(near, hn::FirstN(d, count - i));
-    n += hn::CompressStore(index, hn::RebindMask(di, near), di, out + n);
+  for (std::size_t i = 0; i < count; i += lanes, place = hn::Add(place, step)) {
+    const auto near = near_box({hn::Load(d, x + i), hn::Load(d, y + i), hn::Load(d, z + i)}, box, count - i);
+    n += hn::CompressStore(place, hn::RebindMask(di, near), di, out + n);
   }
   return n;
 }

@@ -48,11 +48,13 @@ HWY_INLINE void put(const float* HWY_RESTRICT lane, const VoxelBox& brick, float
 void SumBrick(const LeafSplat& leaf, const VoxelBox& brick, LeafSums& out) {
   const float h = leaf.voxel;
   const Picked& near = out.near;
-  const float lo[3] = {h * (static_cast<float>(brick.x) - 3.5F), h * (static_cast<float>(brick.y) - 3.5F),
-                       h * (static_cast<float>(brick.z) - 3.5F)};
-  const float extent[3] = {h * (brick_x - 1), h * (brick_y - 1), h * (brick_z - 1)};
+  const auto half = [&](int edge) { return 0.5F * h * static_cast<float>(edge - 1); };
+  const auto middle = [&](int first, int edge) { return h * (static_cast<float>(first) - 3.5F) + half(edge); };
+  const BoxTest test{{middle(brick.x, brick_x), middle(brick.y, brick_y), middle(brick.z, brick_z)},
+                     {half(brick_x), half(brick_y), half(brick_z)},
+                     1.0F};
   std::int32_t* const chosen = out.chosen.data();
-  const std::size_t m = pick(near.x.data(), near.y.data(), near.z.data(), near.count, lo, extent, 1.0F, chosen);
+  const std::size_t m = pick(near.x.data(), near.y.data(), near.z.data(), near.count, test, chosen);
   HWY_ALIGN float sums[widest * lanes];
   hn::Store(
       weigh(near.x.data(), near.y.data(), near.z.data(), chosen, m, brick_voxels(brick, h), out.weights.data()), d,
@@ -73,6 +75,17 @@ bool any_active(const LeafMask& active, const VoxelBox& box, int nx, int ny, int
   return any != 0;
 }
 
+/// Brings the values of a block's candidates together: they are read once for each of its bricks.
+void copy_values(const LeafSplat& leaf, const Picked& near, float* HWY_RESTRICT to) {
+  const hn::CappedTag<float, 4> d4;  // records are padded to four
+  for (std::size_t k = 0; k < near.count; ++k, to += leaf.stride) {
+    const float* HWY_RESTRICT from = leaf.values + static_cast<std::size_t>(near.at[k]) * leaf.stride;
+    std::size_t c = 0;
+    for (; c + lanes <= leaf.stride; c += lanes) hn::StoreU(hn::LoadU(d, from + c), d, to + c);
+    for (; c < leaf.stride; c += hn::Lanes(d4)) hn::StoreU(hn::LoadU(d4, from + c), d4, to + c);
+  }
+}
+
 void SplatLeaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
   out.sums.room(static_cast<std::size_t>(leaf.channels) * leaf_size);
   out.plain.room(leaf_size);
@@ -81,11 +94,9 @@ void SplatLeaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
     for (int by = 0; by < 8; by += block)
       for (int bz = 0; bz < 8; bz += block) {
         if (!any_active(active, {bx, by, bz}, block, block, block)) continue;
-        pick_near(all.x.data(), all.y.data(), all.z.data(), all.count, {bx, by, bz, block}, leaf.voxel, out.near);
+        pick_near(all, {bx, by, bz, block}, leaf.voxel, out.near);
         float* const values = out.values.room(out.near.count * leaf.stride);
-        for (std::size_t k = 0; k < out.near.count; ++k)
-          std::memcpy(values + k * leaf.stride, leaf.values + static_cast<std::size_t>(out.near.at[k]) * leaf.stride,
-                      leaf.stride * sizeof(float));
+        copy_values(leaf, out.near, values);
         out.chosen.room(out.near.count);
         out.weights.room(out.near.count * lanes);
         for (int x = bx; x < bx + block; x += brick_x)

@@ -61,22 +61,35 @@ void ScanCell(const CellScan& cell, float half, LeafCandidates& out) {
   out.count = n;
 }
 
-void PickNear(const float* x, const float* y, const float* z, std::size_t count, const VoxelBox& box, float h,
-              Picked& out) {
-  std::int32_t* at = out.at.room(count);
-  const float extent = h * static_cast<float>(box.edge - 1);
-  const float lo[3] = {h * (static_cast<float>(box.x) - 3.5F), h * (static_cast<float>(box.y) - 3.5F),
-                       h * (static_cast<float>(box.z) - 3.5F)};
-  const float extents[3] = {extent, extent, extent};
-  out.count = pick(x, y, z, count, lo, extents, 1 + margin, at);
-  float* px = out.x.room(out.count);
-  float* py = out.y.room(out.count);
-  float* pz = out.z.room(out.count);
-  for (std::size_t k = 0; k < out.count; ++k) {
-    px[k] = x[at[k]];
-    py[k] = y[at[k]];
-    pz[k] = z[at[k]];
+// A box of voxel centres, and the squared distance from it within which a candidate may reach them.
+BoxTest test_of(const VoxelBox& box, float h, float limit) {
+  const float half = 0.5F * h * static_cast<float>(box.edge - 1);
+  const auto middle = [&](int first) { return h * (static_cast<float>(first) - 3.5F) + half; };
+  return {{middle(box.x), middle(box.y), middle(box.z)}, {half, half, half}, limit};
+}
+
+void PickNear(const LeafCandidates& from, const VoxelBox& box, float h, Picked& out) {
+  const BoxTest test = test_of(box, h, 1 + margin);
+  float* const x = out.x.room(from.count);
+  float* const y = out.y.room(from.count);
+  float* const z = out.z.room(from.count);
+  std::int32_t* const at = out.at.room(from.count);
+  std::size_t n = 0;
+  auto place = hn::Iota(di, 0);
+  for (std::size_t i = 0; i < from.count; i += lanes, place = hn::Add(place, hn::Set(di, lanes))) {
+    const Voxels v{hn::Load(d, from.x.data() + i), hn::Load(d, from.y.data() + i), hn::Load(d, from.z.data() + i)};
+    const auto near = near_box(v, test, from.count - i);
+    hn::CompressStore(v.x, near, d, x + n);
+    hn::CompressStore(v.y, near, d, y + n);
+    hn::CompressStore(v.z, near, d, z + n);
+    n += hn::CompressStore(place, hn::RebindMask(di, near), di, at + n);
   }
+  out.count = n;
+}
+
+std::size_t PickPlaces(const Picked& from, const VoxelBox& box, float h, Grow<std::int32_t>& out) {
+  return pick(from.x.data(), from.y.data(), from.z.data(), from.count, test_of(box, h, 1 + margin),
+              out.room(from.count));
 }
 
 /// Adds the lanes of a brick to a leaf's mask.
@@ -91,31 +104,45 @@ void add_bits(hn::Mask<D> lanes_set, const VoxelBox& brick, LeafMask& mask) {
     }
 }
 
-/// One brick. The voxels near the middle of the list's cells are covered first when the search starts there.
-void CoverBrick(const Picked& near, const VoxelBox& brick, float h, LeafMask& inside, LeafMask& perhaps) {
-  const Voxels at = brick_voxels(brick, h);
-  const V sure = hn::Set(d, 1 - margin), possible = hn::Set(d, 1 + margin);
+/// Narrows `least`, the squared distances of a brick's voxels from the nearest candidate, by those from `begin` on and
+/// then from the start of the list, until all voxels are certainly inside or `most` have been looked at.
+V NearestTo(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z, std::size_t count,
+            std::size_t begin, std::size_t most, const Voxels& at) {
+  const V sure = hn::Set(d, 1 - margin);
   V least = hn::Set(d, 4.0F);
-  std::size_t i = near.count / 2;
-  for (std::size_t k = 0; k < near.count; ++k, i = i + 1 == near.count ? 0 : i + 1) {
-    const V dx = hn::Sub(at.x, hn::Set(d, near.x[i])), dy = hn::Sub(at.y, hn::Set(d, near.y[i])),
-            dz = hn::Sub(at.z, hn::Set(d, near.z[i]));
+  std::size_t i = begin;
+  for (std::size_t k = 0; k < most; ++k, i = i + 1 == count ? 0 : i + 1) {
+    const V dx = hn::Sub(at.x, hn::Set(d, x[i])), dy = hn::Sub(at.y, hn::Set(d, y[i])),
+            dz = hn::Sub(at.z, hn::Set(d, z[i]));
     least = hn::Min(least, hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))));
-    if (hn::AllTrue(d, hn::Lt(least, sure))) break;
+    if (k % 4 == 3 && hn::AllTrue(d, hn::Lt(least, sure))) break;
   }
-  add_bits(hn::Lt(least, sure), brick, inside);
-  add_bits(hn::Lt(least, possible), brick, perhaps);
+  return least;
 }
 
-void Cover(const LeafCandidates& candidates, float h, Picked& near, LeafMask& inside, LeafMask& perhaps) {
+/// The candidates in the middle of the list lie in the leaf's own cell or near it: they cover most bricks of a leaf
+/// that is full of particles, and only the others need a search among all that are near.
+void Cover(const LeafCandidates& all, float h, Picked& near, LeafMask& inside, LeafMask& perhaps) {
+  const std::size_t first_look = all.count < 48 ? all.count : 48;
+  const V sure = hn::Set(d, 1 - margin), possible = hn::Set(d, 1 + margin);
   for (int bx = 0; bx < 8; bx += block)
     for (int by = 0; by < 8; by += block)
       for (int bz = 0; bz < 8; bz += block) {
-        PickNear(candidates.x.data(), candidates.y.data(), candidates.z.data(), candidates.count, {bx, by, bz, block},
-                 h, near);
+        bool picked = false;
         for (int x = bx; x < bx + block; x += brick_x)
           for (int y = by; y < by + block; y += brick_y)
-            for (int z = bz; z < bz + block; z += brick_z) CoverBrick(near, {x, y, z}, h, inside, perhaps);
+            for (int z = bz; z < bz + block; z += brick_z) {
+              const Voxels at = brick_voxels({x, y, z}, h);
+              V least = NearestTo(all.x.data(), all.y.data(), all.z.data(), all.count, all.count / 2, first_look, at);
+              if (!hn::AllTrue(d, hn::Lt(least, sure))) {
+                if (!picked) PickNear(all, {bx, by, bz, block}, h, near);
+                picked = true;
+                least = NearestTo(near.x.data(), near.y.data(), near.z.data(), near.count, near.count / 2, near.count,
+                                  at);
+              }
+              add_bits(hn::Lt(least, sure), {x, y, z}, inside);
+              add_bits(hn::Lt(least, possible), {x, y, z}, perhaps);
+            }
       }
 }
 
@@ -128,6 +155,7 @@ HWY_AFTER_NAMESPACE();
 namespace grainvdb {
 HWY_EXPORT(ScanCell);
 HWY_EXPORT(PickNear);
+HWY_EXPORT(PickPlaces);
 HWY_EXPORT(Cover);
 
 void gather_candidates(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCandidates& out) {
@@ -165,9 +193,12 @@ void cover(const LeafCandidates& candidates, float voxel, Picked& scratch, LeafM
   HWY_DYNAMIC_DISPATCH(Cover)(candidates, voxel, scratch, inside, perhaps);
 }
 
-void pick_near(const float* x, const float* y, const float* z, std::size_t count, const VoxelBox& box, float voxel,
-               Picked& out) {
-  HWY_DYNAMIC_DISPATCH(PickNear)(x, y, z, count, box, voxel, out);
+void pick_near(const LeafCandidates& candidates, const VoxelBox& box, float voxel, Picked& out) {
+  HWY_DYNAMIC_DISPATCH(PickNear)(candidates, box, voxel, out);
+}
+
+std::size_t pick_places(const Picked& from, const VoxelBox& box, float voxel, Grow<std::int32_t>& out) {
+  return HWY_DYNAMIC_DISPATCH(PickPlaces)(from, box, voxel, out);
 }
 }  // namespace grainvdb
 #endif

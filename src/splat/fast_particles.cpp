@@ -16,32 +16,33 @@
 namespace grainvdb {
 namespace {
 
-// Positions in single precision move the rim of a support by δ = 2e-7 c, which changes W by a factor 3 δ/(1-r): more
-// than 1e-5 for the terms with 1-r < 0.06, each of which is less than 8.6e-4 W(0). At most 20 or so lie so near the rim
-// of one voxel. They matter only where a sum has little else, and there the voxel is summed again in double:
+// Rounding of positions and squared distances moves the rim of a support by some δ = 6e-8 c, which changes W by a factor
+// 3 δ/(1-r): more than 5e-6 for the terms with 1-r < 0.036, each of which is less than 1.9e-4 W(0). They matter only
+// where a sum has little else, and there the voxel is summed again in double:
 
 /// where the sum of W/W(0) is less than this (the outermost voxels of the material),
-constexpr double rim = 0.02;
+constexpr double rim = 0.01;
 /// and where the sum of a channel is less than this part of W(0) times the largest |q| of the leaf (its larger values
 /// are far away), unless the candidates with small values are too few to be most of what the voxel sees.
-constexpr double faint = 3e-3;
+constexpr double faint = 1e-3;
 /// A value is small below this part of the largest. Where Σ W/W(0) exceeds their number n, Σ |q| W is at least
 /// small (Σ W - n W(0)) max |q|.
 constexpr double small = 1e-2;
 
-/// A channel of a voxel that is summed again.
-struct Again {
-  std::size_t channel, weight;
-  double sum = 0, weight_sum = 0;
+/// A candidate as a voxel sees it that is summed again.
+struct ExactTerm {
+  double w;
+  const float* record;
 };
 
 struct LeafWork {
   LeafCandidates candidates;
   Records::OfLeaf records;
   LeafSums sums;
-  Picked near_block, near_voxel;
+  Picked near;                  // candidates of a block with voxels to be summed again
+  Grow<std::int32_t> places;    // of those near such a voxel
   std::vector<LeafMask> faint;  // of each channel
-  std::vector<Again> again;
+  std::vector<ExactTerm> terms;
   std::vector<double> values;  // [channel][offset]
 };
 
@@ -121,19 +122,16 @@ class FastSplat {
       any |= work.faint[c];
     }
     if (any.none()) return;
-    const LeafCandidates& all = work.candidates;
     for (int x = 0; x < leaf_edge; x += 4)
       for (int y = 0; y < leaf_edge; y += 4)
         for (int z = 0; z < leaf_edge; z += 4) {
           const VoxelBox block{x, y, z, 4};
           bool begun = false;
           for_each_voxel_of(block, any, [&](const VoxelBox& v, int offset) {
-            if (!begun)
-              pick_near(all.x.data(), all.y.data(), all.z.data(), all.count, block, voxel(), work.near_block);
+            if (!begun) pick_near(work.candidates, block, voxel(), work.near);
             begun = true;
-            pick_near(work.near_block.x.data(), work.near_block.y.data(), work.near_block.z.data(),
-                      work.near_block.count, v, voxel(), work.near_voxel);
-            sum_in_double(voxel_at(origin, offset), static_cast<std::size_t>(offset), work);
+            const std::size_t count = pick_places(work.near, v, voxel(), work.places);
+            sum_in_double(voxel_at(origin, offset), static_cast<std::size_t>(offset), count, work);
           });
         }
   }
@@ -147,31 +145,31 @@ class FastSplat {
   }
 
   /// Positions in double; the values in single precision are exact enough.
-  void sum_in_double(const Coord& at, std::size_t offset, LeafWork& work) const {
-    work.again.clear();
-    for (std::size_t c = 0; c < channels_; ++c)
-      if (work.faint[c].test(static_cast<int>(offset))) work.again.push_back({c, weight(c)});
+  void sum_in_double(const Coord& at, std::size_t offset, std::size_t near, LeafWork& work) const {
     const double h = lattice_.voxel();
-    for (std::size_t k = 0; k < work.near_voxel.count; ++k) {
-      const auto in_block = static_cast<std::size_t>(work.near_voxel.at[k]);
-      const auto in_leaf = static_cast<std::size_t>(work.near_block.at[in_block]);
+    std::vector<ExactTerm>& terms = work.terms;
+    terms.clear();
+    for (std::size_t k = 0; k < near; ++k) {
+      const auto in_leaf = static_cast<std::size_t>(work.near.at[static_cast<std::size_t>(work.places[k])]);
       const std::size_t e = work.candidates.entry[in_leaf];
       double r2 = 0;
       for (int a = 0; a < 3; ++a) {
         const double d = (at[a] - buckets_.index[a][e]) * h;
         r2 += d * d;
       }
-      const double w = kernel_.value(r2);
-      const float* q = work.records.values.data() + in_leaf * records_.stride();
-      for (Again& a : work.again) {
-        a.sum += w * q[a.channel];
-        a.weight_sum += w * q[a.weight];
-      }
+      if (const double w = kernel_.value(r2); w > 0)
+        terms.push_back({w, work.records.values.data() + in_leaf * records_.stride()});
     }
-    for (const Again& a : work.again)
-      work.values[a.channel * leaf_size + offset] =
-          records_.scale(a.channel) * a.sum +
-          records_.scale(a.weight) * work.records.reference[a.channel] * a.weight_sum;
+    const auto sum = [&](std::size_t channel) {
+      double total = 0;
+      for (const ExactTerm& t : terms) total += t.w * static_cast<double>(t.record[channel]);
+      return records_.scale(channel) * total;
+    };
+    for (std::size_t c = 0; c < channels_; ++c) {
+      if (!work.faint[c].test(static_cast<int>(offset))) continue;
+      const double reference = work.records.reference[c];
+      work.values[c * leaf_size + offset] = sum(c) + (reference == 0 ? 0 : reference * sum(weight(c)));
+    }
   }
 
   const Lattice& lattice_;
