@@ -2,6 +2,7 @@
 /// The reference that both sides of a comparison are checked against: sums in double precision over a dense box, with
 /// what bounds their rounding.
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -14,10 +15,10 @@ namespace grainvdb::bench {
 
 class DenseSums {
  public:
-  /// Zero sums over the voxels that the supports of the scene can reach.
-  DenseSums(const Scene& scene, double h, int channels);
+  /// Zero sums over the voxels that the supports of the points, or of branches that start there, can reach.
+  DenseSums(const Columns3& position, double h, int channels);
 
-  /// Adds values[c] w to the channels of a voxel. `weight` > 0.
+  /// Adds values[c] times the weight to the channels of a voxel.
   void add(int i, int j, int k, double weight, const double* values);
 
   /// Terms added in all: kernel values computed.
@@ -28,8 +29,8 @@ class DenseSums {
     double per_term = 0;  ///< the same for every term of the sum: what adding up in single precision loses
     double absolute = 0;  ///< per unit of Σ |q| over the terms: an error of W
   };
-  /// The largest error of the grids' values divided by what is tolerated: at most 1 if they agree. Infinite unless a
-  /// voxel is active exactly where a term was added.
+  /// The largest error of the grids' values divided by what is tolerated: at most 1 if they agree. Infinite unless the
+  /// voxels are active exactly where a term was added; with an absolute tolerance, inactive ones count as zero.
   double disagreement(const Grids& grids, const Tolerance& tolerance) const;
 
  private:
@@ -43,5 +44,8 @@ class DenseSums {
 
 /// Σ q W by plain loops. `q` is laid out [particle][channel].
 DenseSums sum_particles(const Scene& scene, double h, std::span<const double> q, int channels);
+
+/// Σ q ∫W over half branches, in closed form. `q` is laid out [branch][channel].
+DenseSums sum_branches(const HalfBranches& branches, double h, std::span<const double> q, int channels);
 
 }  // namespace grainvdb::bench

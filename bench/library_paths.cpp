@@ -1,7 +1,10 @@
 #include "library_paths.hpp"
 
+#include <utility>
+
+#include "grainvdb/field_sink.hpp"
 #include "grainvdb/grids.hpp"
-#include "splat/bricks.hpp"
+#include "grainvdb/run.hpp"
 #include "splat/splat.hpp"
 
 namespace grainvdb::bench {
@@ -14,24 +17,28 @@ std::vector<int> weights(int channels) {
   return weight_of;
 }
 
-Grids to_grids(const Setting& setting, const LeafBuffers& sums) {
+SparseField make_field(const Setting& setting, std::shared_ptr<const Topology> topology, int channels) {
   FieldMeta meta;
-  meta.components = sums.channels();
-  SparseField field(meta, sums.topology(), setting.lattice);
-  for (std::size_t leaf = 0; leaf < sums.topology()->leaf_count(); ++leaf)
-    for (int c = 0; c < sums.channels(); ++c) {
-      const double* from = sums.block(leaf, c);
-      float* to = field.leaf(leaf, c);
-      for (int v = 0; v < leaf_size; ++v) to[v] = static_cast<float>(from[v]);
-    }
-  return field.grids().components;
+  meta.components = channels;
+  return {meta, std::move(topology), setting.lattice};
+}
+
+/// `values` are laid out [channel][offset].
+void store(const double* values, std::size_t leaf, SparseField& field) {
+  for (int c = 0; c < field.components(); ++c, values += leaf_size) {
+    float* to = field.leaf(leaf, c);
+    for (int v = 0; v < leaf_size; ++v) to[v] = static_cast<float>(values[v]);
+  }
 }
 
 }  // namespace
 
 Grids splat_to_grids(const Setting& setting, const Scene& scene, std::span<const double> q, int channels) {
   const Prepared prepared = prepare(setting, scene);
-  return to_grids(setting, splat_prepared(setting, prepared, q, channels));
+  SparseField field = make_field(setting, prepared.topology, channels);
+  splat_particles_fast(setting.lattice, setting.kernel, prepared.buckets, *prepared.topology, q, weights(channels),
+                       [&](std::size_t leaf, const double* values) { store(values, leaf, field); });
+  return field.grids().components;
 }
 
 Prepared prepare(const Setting& setting, const Scene& scene) {
@@ -41,9 +48,55 @@ Prepared prepare(const Setting& setting, const Scene& scene) {
   return prepared;
 }
 
-LeafBuffers splat_prepared(const Setting& setting, const Prepared& prepared, std::span<const double> q, int channels) {
-  return splat_particles_fast(setting.lattice, setting.kernel, prepared.buckets, prepared.topology, q,
-                              weights(channels));
+void splat_prepared(const Setting& setting, const Prepared& prepared, std::span<const double> q, int channels) {
+  splat_particles_fast(setting.lattice, setting.kernel, prepared.buckets, *prepared.topology, q, weights(channels),
+                       [](std::size_t, const double*) {});
+}
+
+PreparedLeaves::PreparedLeaves(const Setting& setting, const Prepared& prepared, std::span<const double> q,
+                               int channels)
+    : leaves_(prepared.topology->leaf_count()),
+      channels_(channels),
+      voxel_(static_cast<float>(setting.lattice.voxel() / setting.kernel.cutoff())) {
+  const Records records(prepared.buckets, q, weights(channels));
+  stride_ = records.stride();
+  const double reach = setting.kernel.cutoff() / setting.lattice.voxel();
+  for (std::size_t l = 0; l < leaves_.size(); ++l) {
+    const Coord& origin = prepared.topology->origin(l);
+    gather_candidates(prepared.buckets, origin, reach, leaves_[l].candidates);
+    records.gather(origin, leaves_[l].candidates, leaves_[l].records);
+    leaves_[l].active = prepared.topology->mask(l);
+  }
+}
+
+void PreparedLeaves::splat() {
+  for (const Leaf& leaf : leaves_)
+    splat_leaf({&leaf.candidates, leaf.records.values.data(), stride_, channels_, voxel_}, leaf.active, sums_);
+}
+
+std::vector<ContactMethod> contact_methods() {
+  std::vector<ContactMethod> methods{{"exact", {0}}};
+  for (const int n : {2, 3, 4}) methods.push_back({"gauss" + std::to_string(n), {n}});
+  return methods;
+}
+
+Grids contacts_to_grids(const Setting& setting, const HalfBranches& branches, std::span<const double> q, int channels,
+                        const ContactMethod& method) {
+  const LeafBuffers sums = splat_contacts(setting.lattice, setting.kernel, branches, q, channels, method.integral);
+  SparseField field = make_field(setting, sums.topology(), channels);
+  for (std::size_t leaf = 0; leaf < sums.topology()->leaf_count(); ++leaf) store(sums.block(leaf, 0), leaf, field);
+  return field.grids().components;
+}
+
+void run_pipeline_file(const std::string& file, const std::string& folder) {
+  const Pipeline pipeline = load_pipeline(file);
+  const Plan plan = make_plan(pipeline);
+  const auto source = open_dumps(pipeline.input);
+  std::vector<std::unique_ptr<FieldSink>> sinks;
+  for (const std::string& format : pipeline.formats)
+    for (const SinkInfo& sink : sink_registry())
+      if (sink.name == format) sinks.push_back(sink.make(folder));
+  run_pipeline(pipeline, plan, *source, sinks);
 }
 
 std::string instruction_set() {

@@ -7,9 +7,13 @@
 
 #include "bin/buckets.hpp"
 #include "grainvdb/kernel.hpp"
-#include "grainvdb/leaf_buffers.hpp"
+#include "grainvdb/moment.hpp"
+#include "grainvdb/topology.hpp"
 #include "grids.hpp"
 #include "scene.hpp"
+#include "splat/bricks.hpp"
+#include "splat/candidates.hpp"
+#include "splat/records.hpp"
 
 namespace grainvdb::bench {
 
@@ -30,8 +34,41 @@ struct Prepared {
 };
 Prepared prepare(const Setting& setting, const Scene& scene);
 
-/// The kernel loop of all leaves, candidates and output included.
-LeafBuffers splat_prepared(const Setting& setting, const Prepared& prepared, std::span<const double> q, int channels);
+/// The kernel loop: candidates, weights and sums of every leaf, each dropped when it is done.
+void splat_prepared(const Setting& setting, const Prepared& prepared, std::span<const double> q, int channels);
+
+/// The innermost part of it: weights and sums of leaves whose candidates and values were collected before.
+class PreparedLeaves {
+ public:
+  PreparedLeaves(const Setting& setting, const Prepared& prepared, std::span<const double> q, int channels);
+  void splat();
+
+ private:
+  struct Leaf {
+    LeafCandidates candidates;
+    Records::OfLeaf records;
+    LeafMask active;
+  };
+  std::vector<Leaf> leaves_;
+  std::size_t stride_ = 0;
+  int channels_;
+  float voxel_;
+  LeafSums sums_;
+};
+
+/// A way to evaluate the line integrals of the contacts.
+struct ContactMethod {
+  std::string name;
+  LineIntegral integral;
+};
+std::vector<ContactMethod> contact_methods();
+
+/// Half branches to grids. `q` is laid out [branch][channel].
+Grids contacts_to_grids(const Setting& setting, const HalfBranches& branches, std::span<const double> q, int channels,
+                        const ContactMethod& method);
+
+/// Runs a pipeline file into a folder, as the command does.
+void run_pipeline_file(const std::string& file, const std::string& folder);
 
 /// The instruction set of the splat.
 std::string instruction_set();

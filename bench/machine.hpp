@@ -14,4 +14,7 @@ const char* multiply_add_target();
 /// a[i] = b[i] + 3 c[i].
 void triad(float* a, const float* b, const float* c, std::size_t n);
 
+/// kernel/peak_fma and machine/triad.
+void register_machine();
+
 }  // namespace grainvdb::bench

@@ -1,27 +1,63 @@
-// Runs the benchmarks, or with --check only the comparisons of their results, on a small scene.
+// Runs the benchmarks. `--check` only compares their results, on a small scene; `--quick` takes smaller scenes.
 #include <cstdio>
 #include <exception>
 #include <string_view>
 
 #include <benchmark/benchmark.h>
 #include <openvdb/openvdb.h>
-#include <tbb/global_control.h>
+#include <tbb/version.h>
 
 #include "check.hpp"
+#include "contact_bench.hpp"
+#include "growth_bench.hpp"
 #include "library_paths.hpp"
+#include "machine.hpp"
+#include "run_bench.hpp"
 #include "splat_bench.hpp"
+#include "threads.hpp"
+
+namespace grainvdb::bench {
+namespace {
+
+int check_results() {
+  check_splat(tiny_sizes());
+  check_contacts(tiny_sizes());
+  check_run(tiny_sizes());
+  return all_checks_succeeded() ? 0 : 1;
+}
+
+void describe_build() {
+  benchmark::AddCustomContext("instruction_set", instruction_set());
+  benchmark::AddCustomContext("compiler", GRAINVDB_BENCH_COMPILER);
+  benchmark::AddCustomContext("flags", GRAINVDB_BENCH_FLAGS);
+  benchmark::AddCustomContext("openvdb", OPENVDB_LIBRARY_VERSION_STRING);
+  benchmark::AddCustomContext("tbb", TBB_VERSION_STRING);
+}
+
+}  // namespace
+}  // namespace grainvdb::bench
 
 int main(int argc, char** argv) {
   using namespace grainvdb::bench;
   try {
     openvdb::initialize();
-    const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-    if (argc == 2 && std::string_view(argv[1]) == "--check") {
-      check_splat({.particles = 500});
-      return all_checks_succeeded() ? 0 : 1;
+    use_threads(1);
+    const std::string_view mode = argc > 1 ? argv[1] : "";
+    if (mode == "--check") return check_results();
+    const bool quick = mode == "--quick";
+    const Sizes sizes = quick ? quick_sizes() : Sizes();
+    if (quick) {
+      argv[1] = argv[0];
+      --argc;
+      ++argv;
     }
-    register_splat({});
-    benchmark::AddCustomContext("splat_target", instruction_set());
+    register_splat(sizes);
+    register_contacts(sizes);
+    register_machine();
+    register_growth(sizes);
+    register_memory(sizes);
+    register_run(sizes);
+    describe_build();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
     benchmark::RunSpecifiedBenchmarks();

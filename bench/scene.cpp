@@ -125,7 +125,7 @@ std::vector<double> moments(const Scene& scene, int channels) {
   return q;
 }
 
-HalfBranches make_branches(const Scene& scene) {
+Branches make_branches(const Scene& scene) {
   std::vector<Pair> pairs = near_pairs(scene);
   pairs.resize(std::min(pairs.size(), 3 * scene.size()));
   // Dumps list contacts by their particles.
@@ -133,9 +133,10 @@ HalfBranches make_branches(const Scene& scene) {
             [](const Pair& p, const Pair& q) { return p.a != q.a ? p.a < q.a : p.b < q.b; });
 
   Uniform random(2);
-  HalfBranches branches;
-  const auto add = [&](std::size_t from, std::size_t to, const std::array<double, 3>& force) {
+  Branches branches;
+  const auto add = [&](std::uint32_t from, std::uint32_t to, const std::array<double, 3>& force) {
     const double part = scene.diameter[from] / (scene.diameter[from] + scene.diameter[to]);
+    branches.particle.push_back(from);
     for (std::size_t a = 0; a < 3; ++a) {
       const double x = scene.position[a][from];
       branches.start[a].push_back(x);

@@ -2,6 +2,7 @@
 /// The material that all benchmarks share: spheres in an open box, a stand-in for a dense packing that needs no
 /// simulation, the same on every machine.
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "grainvdb/frame.hpp"
@@ -30,9 +31,13 @@ Scene make_scene(std::size_t particles);
 /// The first `channels` of all_channels for every particle, [particle][channel].
 std::vector<double> moments(const Scene& scene, int channels);
 
-/// Contacts between the three nearest pairs per particle: half branches from both centres to the point that divides the
-/// line of centres as the radii do, with random forces.
-HalfBranches make_branches(const Scene& scene);
+struct Branches : HalfBranches {
+  std::vector<std::uint32_t> particle;  ///< where each starts
+};
+
+/// Contacts between the three nearest pairs per particle: two half branches each, one after the other, from both
+/// centres to the point that divides the line of centres as the radii do, with random forces.
+Branches make_branches(const Scene& scene);
 
 /// -F_i a_j of every half branch, [branch][3 i + j].
 std::vector<double> stress_values(const HalfBranches& branches);
