@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/parallel.hpp"
 #include "grainvdb/topology.hpp"
 
 namespace grainvdb {
@@ -35,84 +36,153 @@ Images images(const Lattice& lattice, int axis, double x, double reach) {
 
 // Origin of the leaf cell of the voxel that holds index position u.
 std::int32_t cell(double u) {
-  return static_cast<std::int32_t>(std::floor(u + 0.5)) & ~(leaf_edge - 1);
+  // What std::floor gives, which is a call where the processor has no instruction for it by default.
+  const double x = u + 0.5;
+  const auto toward_zero = static_cast<std::int32_t>(x);
+  return (toward_zero - (toward_zero > x ? 1 : 0)) & ~(leaf_edge - 1);
 }
 
 using Cells = std::array<std::vector<std::int32_t>, 3>;
+using Order = std::vector<std::uint32_t>;
 
-// Stable sort of `order` by the cell coordinate along one axis, by digits of 16 bits.
-void radix_sort(const std::vector<std::int32_t>& key, std::vector<std::size_t>& order) {
-  const auto [low, high] = std::minmax_element(key.begin(), key.end());
-  const std::int32_t base = *low;
-  const auto digits = [base](std::int32_t k) {
-    return static_cast<std::uint32_t>(std::int64_t{k} - base) / static_cast<std::uint32_t>(leaf_edge);
-  };
-  std::vector<std::size_t> sorted(order.size());
-  for (unsigned shift = 0; shift < 32 && (digits(*high) >> shift) != 0; shift += 16) {
-    std::vector<std::size_t> begin((std::min<std::uint32_t>(digits(*high) >> shift, 0xffff)) + 2);
-    for (const std::int32_t k : key) ++begin[((digits(k) >> shift) & 0xffff) + 1];
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    for (const std::size_t e : order) sorted[begin[(digits(key[e]) >> shift) & 0xffff]++] = e;
-    order.swap(sorted);
+// Images of all points before they are sorted, in ascending order of their points.
+struct Unsorted {
+  explicit Unsorted(std::size_t entries) : point(entries) {
+    for (auto& column : index) column.resize(entries);
+    for (auto& column : key) column.resize(entries);
   }
+  std::vector<std::uint32_t> point;
+  Columns3 index;
+  Cells key;
+};
+
+std::size_t image_count(const std::array<Images, 3>& image) {
+  std::size_t n = 1;
+  for (const Images& i : image) n *= static_cast<std::size_t>(i.last - i.first + 1);
+  return n;
+}
+
+Unsorted all_images(const Lattice& lattice, const Columns3& position, double reach) {
+  const std::size_t points = position[0].size();
+  const auto images_of = [&](std::size_t p) {
+    return std::array<Images, 3>{images(lattice, 0, position[0][p], reach), images(lattice, 1, position[1][p], reach),
+                                 images(lattice, 2, position[2][p], reach)};
+  };
+  const bool periodic = lattice.period(0) || lattice.period(1) || lattice.period(2);
+  std::vector<std::size_t> start(points + 1);
+  parallel_for(points, [&](std::size_t p) { start[p + 1] = periodic ? image_count(images_of(p)) : 1; });
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  if (start.back() > std::numeric_limits<std::uint32_t>::max())
+    throw std::invalid_argument("too many periodic images");
+
+  Unsorted all(start.back());
+  parallel_for(points, [&](std::size_t p) {
+    const std::array<Images, 3> image = images_of(p);
+    std::size_t e = start[p];
+    std::array<std::int64_t, 3> k{};
+    for (k[0] = image[0].first; k[0] <= image[0].last; ++k[0])
+      for (k[1] = image[1].first; k[1] <= image[1].last; ++k[1])
+        for (k[2] = image[2].first; k[2] <= image[2].last; ++k[2], ++e) {
+          all.point[e] = static_cast<std::uint32_t>(p);
+          for (int a = 0; a < 3; ++a) {
+            const auto& period = lattice.period(a);
+            const double u = period ? image[a].u + static_cast<double>(k[a]) * period->count : image[a].u;
+            all.index[a][e] = u;
+            all.key[a][e] = cell(u);
+          }
+        }
+  });
+  return all;
+}
+
+// The cells along one axis as numbers from 0.
+struct Axis {
+  explicit Axis(const std::vector<std::int32_t>& key) {
+    const auto [low, high] = std::minmax_element(key.begin(), key.end());
+    base = *low;
+    count = number(*high) + 1;
+  }
+  std::uint64_t number(std::int32_t k) const {
+    return static_cast<std::uint64_t>(std::int64_t{k} - base) / static_cast<std::uint64_t>(leaf_edge);
+  }
+  std::int64_t base = 0;
+  std::uint64_t count = 0;
+};
+
+// Stable sort of `order` by key(entry) < range.
+template <class Key>
+void counting_sort(std::size_t range, const Key& key, Order& order) {
+  Order sorted(order.size());
+  std::vector<std::uint32_t> begin(range + 1);
+  for (const std::uint32_t e : order) ++begin[key(e) + 1];
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  for (const std::uint32_t e : order) sorted[begin[key(e)]++] = e;
+  order.swap(sorted);
+}
+
+// The entries ordered by cell. One counting sort does where the cells are not many more than the entries; where
+// material is spread thinly, digits of 16 bits of one axis after the other keep the memory in proportion to the
+// entries.
+Order by_cell(const Cells& key) {
+  Order order(key[0].size());
+  std::iota(order.begin(), order.end(), std::uint32_t{0});
+  const std::array<Axis, 3> axis{Axis(key[0]), Axis(key[1]), Axis(key[2])};
+  const double cells = static_cast<double>(axis[0].count) * static_cast<double>(axis[1].count) *
+                       static_cast<double>(axis[2].count);
+  if (cells <= 1024 + 4.0 * static_cast<double>(order.size())) {
+    std::vector<std::uint32_t> number(order.size());
+    parallel_for(number.size(), [&](std::size_t e) {
+      number[e] = static_cast<std::uint32_t>(
+          (axis[0].number(key[0][e]) * axis[1].count + axis[1].number(key[1][e])) * axis[2].count +
+          axis[2].number(key[2][e]));
+    });
+    counting_sort(static_cast<std::size_t>(cells), [&](std::uint32_t e) { return number[e]; }, order);
+    return order;
+  }
+  for (std::size_t a = 3; a-- > 0;)
+    for (unsigned shift = 0; shift < 32 && ((axis[a].count - 1) >> shift) != 0; shift += 16)
+      counting_sort(std::size_t{1} << 16,
+                    [&](std::uint32_t e) { return (axis[a].number(key[a][e]) >> shift) & 0xffff; }, order);
+  return order;
 }
 
 }  // namespace
 
 Buckets bin_points(const Lattice& lattice, const Columns3& position, double reach) {
   if (!(reach >= 0) || !std::isfinite(reach)) throw std::invalid_argument("the reach must be finite and not negative");
-  const std::size_t points = position[0].size();
-  if (points > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("too many points");
-  const double r = reach / lattice.voxel();
+  if (position[0].size() > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("too many points");
 
-  // Entries in ascending order of their points; stable sorting keeps that order within each cell.
-  Buckets unsorted;
-  Cells key;
-  for (std::size_t p = 0; p < points; ++p) {
-    const std::array<Images, 3> image{images(lattice, 0, position[0][p], r), images(lattice, 1, position[1][p], r),
-                                      images(lattice, 2, position[2][p], r)};
-    std::array<std::int64_t, 3> k{};
-    const auto coordinate = [&](int axis) {
-      const auto& period = lattice.period(axis);
-      return period ? image[axis].u + static_cast<double>(k[axis]) * period->count : image[axis].u;
-    };
-    for (k[0] = image[0].first; k[0] <= image[0].last; ++k[0])
-      for (k[1] = image[1].first; k[1] <= image[1].last; ++k[1])
-        for (k[2] = image[2].first; k[2] <= image[2].last; ++k[2]) {
-          unsorted.point.push_back(static_cast<std::uint32_t>(p));
-          for (int a = 0; a < 3; ++a) {
-            unsorted.index[a].push_back(coordinate(a));
-            key[a].push_back(cell(unsorted.index[a].back()));
-          }
-        }
-  }
-
-  const std::size_t entries = unsorted.point.size();
-  if (entries > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("too many periodic images");
   Buckets b;
   b.start.push_back(0);
+  if (position[0].empty()) return b;
+  const Unsorted all = all_images(lattice, position, reach / lattice.voxel());
+  const std::size_t entries = all.point.size();
   if (entries == 0) return b;
-  std::vector<std::size_t> order(entries);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  for (int a = 2; a >= 0; --a) radix_sort(key[a], order);
-
-  b.point.reserve(entries);
-  for (auto& column : b.index) column.reserve(entries);
-  for (auto& column : b.local) column.reserve(entries + Buckets::padding);
-  for (const std::size_t e : order) {
-    const Coord c{key[0][e], key[1][e], key[2][e]};
-    if (b.cells.empty() || b.cells.back() != c) {
-      if (!b.cells.empty()) b.start.push_back(b.point.size());
-      b.cells.push_back(c);
-    }
-    b.point.push_back(unsorted.point[e]);
-    for (int a = 0; a < 3; ++a) {
-      b.index[a].push_back(unsorted.index[a][e]);
-      b.local[a].push_back(static_cast<float>(b.index[a].back() - (c[a] + 3.5)));
-    }
+  const Order order = by_cell(all.key);
+  const auto cell_of = [&](std::size_t k) {
+    const std::uint32_t e = order[k];
+    return Coord{all.key[0][e], all.key[1][e], all.key[2][e]};
+  };
+  b.cells.push_back(cell_of(0));
+  for (std::size_t k = 1; k < entries; ++k) {
+    const Coord c = cell_of(k);
+    if (c == b.cells.back()) continue;
+    b.cells.push_back(c);
+    b.start.push_back(k);
   }
-  for (auto& column : b.local) column.resize(entries + Buckets::padding);
   b.start.push_back(entries);
+
+  b.point.resize(entries);
+  for (auto& column : b.index) column.resize(entries);
+  for (auto& column : b.local) column.resize(entries + Buckets::padding);
+  parallel_for(entries, [&](std::size_t k) {
+    const std::uint32_t e = order[k];
+    b.point[k] = all.point[e];
+    for (int a = 0; a < 3; ++a) {
+      b.index[a][k] = all.index[a][e];
+      b.local[a][k] = static_cast<float>(all.index[a][e] - (all.key[a][e] + 3.5));
+    }
+  });
   return b;
 }
 

@@ -69,6 +69,14 @@ HWY_INLINE hn::Mask<D> near_box(const Voxels& v, const BoxTest& box, std::size_t
   return count < lanes ? hn::And(near, hn::FirstN(d, count)) : near;
 }
 
+/// Stores the lanes of the mask one after another, and leaves garbage behind them. Returns their number. Compressing
+/// into a register and storing all of it is faster than a masked store to memory.
+template <class Tag, class Lanes, class Mask>
+HWY_INLINE std::size_t store_some(Lanes v, Mask some, Tag tag, hn::TFromD<Tag>* to) {
+  hn::StoreU(hn::Compress(v, some), tag, to);
+  return hn::CountTrue(tag, some);
+}
+
 /// Collects the places of the candidates that pass, in their order.
 inline HWY_NOINLINE std::size_t pick(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
                                      const float* HWY_RESTRICT z, std::size_t count, const BoxTest& box,
@@ -78,7 +86,7 @@ inline HWY_NOINLINE std::size_t pick(const float* HWY_RESTRICT x, const float* H
   const auto step = hn::Set(di, lanes);
   for (std::size_t i = 0; i < count; i += lanes, place = hn::Add(place, step)) {
     const auto near = near_box({hn::Load(d, x + i), hn::Load(d, y + i), hn::Load(d, z + i)}, box, count - i);
-    n += hn::CompressStore(place, hn::RebindMask(di, near), di, out + n);
+    n += store_some(place, hn::RebindMask(di, near), di, out + n);
   }
   return n;
 }

@@ -1,6 +1,5 @@
 #include "splat/bricks.hpp"
 
-#include <cmath>
 #include <cstring>
 
 #undef HWY_TARGET_INCLUDE
@@ -106,15 +105,22 @@ void SplatLeaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
       }
 }
 
-void ScaleSums(const float* HWY_RESTRICT sum, double unit, const float* HWY_RESTRICT weight, double reference,
-               double* HWY_RESTRICT to) {
+void ScaleSums(const ScaledSum& from, const LeafMask& active, double* HWY_RESTRICT to) {
   const hn::CappedTag<double, 8> d8;
   const hn::Rebind<float, decltype(d8)> f8;
-  const auto scale = hn::Set(d8, unit), mean = hn::Set(d8, reference);
+  const auto scale = hn::Set(d8, from.unit), mean = hn::Set(d8, from.reference);
   for (std::size_t v = 0; v < leaf_size; v += hn::Lanes(d8)) {
-    const auto about = hn::Mul(scale, hn::PromoteTo(d8, hn::LoadU(f8, sum + v)));
-    hn::StoreU(hn::MulAdd(mean, hn::PromoteTo(d8, hn::LoadU(f8, weight + v)), about), d8, to + v);
+    const auto about = hn::Mul(scale, hn::PromoteTo(d8, hn::LoadU(f8, from.sum + v)));
+    const auto value = hn::MulAdd(mean, hn::PromoteTo(d8, hn::LoadU(f8, from.weight + v)), about);
+    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(active.words[v / 64] >> (v % 64))};
+    hn::StoreU(hn::IfThenElseZero(hn::LoadMaskBits(d8, bits), value), d8, to + v);
   }
+}
+
+void Narrow(const double* HWY_RESTRICT from, std::size_t count, float* HWY_RESTRICT to) {
+  const hn::CappedTag<double, 8> d8;
+  const hn::Rebind<float, decltype(d8)> f8;
+  for (std::size_t v = 0; v < count; v += hn::Lanes(d8)) hn::StoreU(hn::DemoteTo(f8, hn::LoadU(d8, from + v)), f8, to + v);
 }
 
 LeafMask FaintVoxels(const float* sum, float least, const float* plain, float rim, float enough,
@@ -133,6 +139,40 @@ LeafMask FaintVoxels(const float* sum, float least, const float* plain, float ri
   return faint;
 }
 
+template <class Tag>
+void CountPart(const float* HWY_RESTRICT values, std::size_t stride, std::size_t count, Tag tag, const float* limit,
+               float* few) {
+  const auto least = hn::LoadU(tag, limit), one = hn::Set(tag, 1.0F);
+  auto n = hn::Zero(tag);
+  for (std::size_t k = 0; k < count; ++k)
+    n = hn::Add(n, hn::IfThenElseZero(hn::Lt(hn::Abs(hn::LoadU(tag, values + k * stride)), least), one));
+  hn::StoreU(n, tag, few);
+}
+
+void CountBelow(const float* values, std::size_t stride, std::size_t count, const float* limit, float* few) {
+  const hn::CappedTag<float, 4> d4;  // records are padded to four
+  std::size_t c = 0;
+  for (; c + lanes <= stride; c += lanes) CountPart(values + c, stride, count, d, limit + c, few + c);
+  for (; c < stride; c += hn::Lanes(d4)) CountPart(values + c, stride, count, d4, limit + c, few + c);
+}
+
+template <class Tag>
+void SumTermsPart(const ExactTerm* HWY_RESTRICT terms, std::size_t count, std::size_t c, Tag tag, double* sums) {
+  const hn::Rebind<float, Tag> floats;
+  auto sum = hn::Zero(tag);
+  for (std::size_t k = 0; k < count; ++k)
+    sum = hn::MulAdd(hn::Set(tag, terms[k].w), hn::PromoteTo(tag, hn::LoadU(floats, terms[k].record + c)), sum);
+  hn::StoreU(sum, tag, sums + c);
+}
+
+void SumTerms(const ExactTerm* terms, std::size_t count, std::size_t stride, double* sums) {
+  const hn::CappedTag<double, 8> d8;
+  const hn::CappedTag<double, 2> d2;  // records are padded to four
+  std::size_t c = 0;
+  for (; c + hn::Lanes(d8) <= stride; c += hn::Lanes(d8)) SumTermsPart(terms, count, c, d8, sums);
+  for (; c < stride; c += hn::Lanes(d2)) SumTermsPart(terms, count, c, d2, sums);
+}
+
 const char* TargetName() {
   return hwy::TargetName(HWY_TARGET);
 }
@@ -146,22 +186,29 @@ HWY_AFTER_NAMESPACE();
 namespace grainvdb {
 HWY_EXPORT(SplatLeaf);
 HWY_EXPORT(ScaleSums);
+HWY_EXPORT(Narrow);
 HWY_EXPORT(FaintVoxels);
+HWY_EXPORT(CountBelow);
+HWY_EXPORT(SumTerms);
 HWY_EXPORT(TargetName);
 void splat_leaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
   HWY_DYNAMIC_DISPATCH(SplatLeaf)(leaf, active, out);
 }
-void scale_sums(const float* sum, double unit, const float* weight, double reference, double* to) {
-  HWY_DYNAMIC_DISPATCH(ScaleSums)(sum, unit, weight, reference, to);
+void scale_sums(const ScaledSum& from, const LeafMask& active, double* to) {
+  HWY_DYNAMIC_DISPATCH(ScaleSums)(from, active, to);
+}
+void narrow(const double* from, std::size_t count, float* to) {
+  HWY_DYNAMIC_DISPATCH(Narrow)(from, count, to);
 }
 LeafMask faint_voxels(const float* sum, float least, const float* plain, float rim, float enough,
                       const LeafMask& active) {
   return HWY_DYNAMIC_DISPATCH(FaintVoxels)(sum, least, plain, rim, enough, active);
 }
-std::size_t count_below(const float* values, std::size_t stride, std::size_t count, float limit) {
-  std::size_t n = 0;
-  for (std::size_t k = 0; k < count; ++k) n += std::abs(values[k * stride]) < limit ? 1U : 0U;
-  return n;
+void count_below(const float* values, std::size_t stride, std::size_t count, const float* limit, float* few) {
+  HWY_DYNAMIC_DISPATCH(CountBelow)(values, stride, count, limit, few);
+}
+void sum_terms(const ExactTerm* terms, std::size_t count, std::size_t stride, double* sums) {
+  HWY_DYNAMIC_DISPATCH(SumTerms)(terms, count, stride, sums);
 }
 const char* splat_target() {
   return HWY_DYNAMIC_DISPATCH(TargetName)();

@@ -34,15 +34,32 @@ struct LeafSums {
 /// Fills sums and plain for the bricks that hold an active voxel; those of other bricks are not touched.
 void splat_leaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out);
 
-/// to[offset] = unit · sum[offset] + reference · weight[offset], for the leaf's voxels.
-void scale_sums(const float* sum, double unit, const float* weight, double reference, double* to);
+/// unit · sum[offset] + reference · weight[offset] of a leaf's voxels.
+struct ScaledSum {
+  const float* sum;
+  double unit;
+  const float* weight;
+  double reference;
+};
+/// Writes it to the active voxels and 0 to the others.
+void scale_sums(const ScaledSum& from, const LeafMask& active, double* to);
 
 /// The active voxels where plain < rim, or |sum| < least and plain < enough.
 LeafMask faint_voxels(const float* sum, float least, const float* plain, float rim, float enough,
                       const LeafMask& active);
 
-/// How many of `count` values, `stride` apart, are smaller than `limit` in magnitude.
-std::size_t count_below(const float* values, std::size_t stride, std::size_t count, float limit);
+/// few[channel] = how many of `count` values, [candidate][stride], are smaller than limit[channel] in magnitude. Limits
+/// and counts have `stride` elements.
+void count_below(const float* values, std::size_t stride, std::size_t count, const float* limit, float* few);
+
+/// What a voxel sees of a candidate, in double precision.
+struct ExactTerm {
+  double w;             ///< W at their distance
+  const float* record;  ///< values of the candidate
+};
+
+/// sums[channel] = Σ w record[channel]; `sums` has `stride` elements.
+void sum_terms(const ExactTerm* terms, std::size_t count, std::size_t stride, double* sums);
 
 /// The instruction set that splat_leaf uses on this machine.
 const char* splat_target();

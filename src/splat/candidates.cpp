@@ -53,10 +53,11 @@ void ScanCell(const CellScan& cell, float half, LeafCandidates& out) {
     const V dz = hn::Max(hn::Sub(hn::Abs(z), reach), zero);
     auto near = hn::Lt(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), limit);
     if (i + lanes > cell.count) near = hn::And(near, hn::FirstN(d, cell.count - i));
-    hn::CompressStore(x, near, d, out.x.data() + n);
-    hn::CompressStore(y, near, d, out.y.data() + n);
-    hn::CompressStore(z, near, d, out.z.data() + n);
-    n += hn::CompressStore(entry, hn::RebindMask(du, near), du, out.entry.data() + n);
+    if (hn::AllFalse(d, near)) continue;
+    store_some(x, near, d, out.x.data() + n);
+    store_some(y, near, d, out.y.data() + n);
+    store_some(z, near, d, out.z.data() + n);
+    n += store_some(entry, hn::RebindMask(du, near), du, out.entry.data() + n);
   }
   out.count = n;
 }
@@ -79,10 +80,10 @@ void PickNear(const LeafCandidates& from, const VoxelBox& box, float h, Picked& 
   for (std::size_t i = 0; i < from.count; i += lanes, place = hn::Add(place, hn::Set(di, lanes))) {
     const Voxels v{hn::Load(d, from.x.data() + i), hn::Load(d, from.y.data() + i), hn::Load(d, from.z.data() + i)};
     const auto near = near_box(v, test, from.count - i);
-    hn::CompressStore(v.x, near, d, x + n);
-    hn::CompressStore(v.y, near, d, y + n);
-    hn::CompressStore(v.z, near, d, z + n);
-    n += hn::CompressStore(place, hn::RebindMask(di, near), di, at + n);
+    store_some(v.x, near, d, x + n);
+    store_some(v.y, near, d, y + n);
+    store_some(v.z, near, d, z + n);
+    n += store_some(place, hn::RebindMask(di, near), di, at + n);
   }
   out.count = n;
 }

@@ -29,12 +29,6 @@ constexpr double faint = 1e-3;
 /// small (Σ W - n W(0)) max |q|.
 constexpr double small = 1e-2;
 
-/// A candidate as a voxel sees it that is summed again.
-struct ExactTerm {
-  double w;
-  const float* record;
-};
-
 struct LeafWork {
   LeafCandidates candidates;
   Records::OfLeaf records;
@@ -43,6 +37,8 @@ struct LeafWork {
   Grow<std::int32_t> places;    // of those near such a voxel
   std::vector<LeafMask> faint;  // of each channel
   std::vector<ExactTerm> terms;
+  std::vector<double> exact;         // their sums
+  std::vector<float> limits, few;    // of each channel
   std::vector<double> values;  // [channel][offset]
 };
 
@@ -64,8 +60,7 @@ class FastSplat {
     records_.gather(origin, work.candidates, work.records);
     splat_leaf({&work.candidates, work.records.values.data(), records_.stride(), static_cast<int>(channels_), voxel()},
                active, work.sums);
-    scale(work);
-    clear_inactive(active, work);
+    scale(active, work);
     sum_again(origin, active, work);
     return work.values.data();
   }
@@ -79,48 +74,54 @@ class FastSplat {
     return work.sums.sums.data() + channel * leaf_size;
   }
 
-  void scale(LeafWork& work) const {
+  void scale(const LeafMask& active, LeafWork& work) const {
     work.values.resize(channels_ * leaf_size);
     const double peak = kernel_.value(0);
     for (std::size_t c = 0; c < channels_; ++c) {
       const std::size_t w = weight(c);
-      scale_sums(sum(work, c), peak * records_.scale(c), sum(work, w),
-                 peak * records_.scale(w) * work.records.reference[c], work.values.data() + c * leaf_size);
+      scale_sums({sum(work, c), peak * records_.scale(c), sum(work, w),
+                  peak * records_.scale(w) * work.records.reference[c]},
+                 active, work.values.data() + c * leaf_size);
     }
-  }
-
-  void clear_inactive(const LeafMask& active, LeafWork& work) const {
-    LeafMask inactive;
-    for (std::size_t i = 0; i < inactive.words.size(); ++i) inactive.words[i] = ~active.words[i];
-    inactive.for_each([&](int v) {
-      for (std::size_t c = 0; c < channels_; ++c) work.values[c * leaf_size + static_cast<std::size_t>(v)] = 0;
-    });
   }
 
   /// The voxels where a channel's sum cannot be trusted. Each channel is judged by itself, so that a sum does not
-  /// depend on which others are asked for.
-  LeafMask faint_of(std::size_t channel, const LeafMask& active, const LeafWork& work) const {
-    // Sums about a reference are small against the reference, whose own sum is right.
-    const bool shifted = work.records.reference[channel] != 0;
-    const float largest = work.records.largest[channel];
-    const float least = shifted ? 0.0F : static_cast<float>(faint) * largest;
-    const auto where = [&](float enough) {
-      return faint_voxels(sum(work, channel), least, work.sums.plain.data(), static_cast<float>(rim), enough, active);
-    };
-    const LeafMask all = where(std::numeric_limits<float>::infinity());
-    if (shifted || all.none()) return all;
-    const std::size_t few = count_below(work.records.values.data() + channel, records_.stride(), work.candidates.count,
-                                        static_cast<float>(small) * largest);
-    return where(static_cast<float>(few) + static_cast<float>(faint / small));
+  /// depend on which others are asked for. Sums about a reference are small against the reference, whose own sum is
+  /// right.
+  LeafMask find_faint(const LeafMask& active, LeafWork& work) const {
+    constexpr float any_number = std::numeric_limits<float>::infinity();
+    work.faint.resize(channels_);
+    LeafMask any;
+    bool count = false;
+    for (std::size_t c = 0; c < channels_; ++c) {
+      const bool shifted = work.records.reference[c] != 0;
+      work.faint[c] = faint_voxels(sum(work, c), shifted ? 0.0F : least(work, c), work.sums.plain.data(),
+                                   static_cast<float>(rim), any_number, active);
+      any |= work.faint[c];
+      count = count || !(shifted || work.faint[c].none());
+    }
+    if (!count) return any;
+
+    work.limits.assign(records_.stride(), 0.0F);
+    work.few.resize(records_.stride());
+    for (std::size_t c = 0; c < channels_; ++c) work.limits[c] = static_cast<float>(small) * work.records.largest[c];
+    count_below(work.records.values.data(), records_.stride(), work.candidates.count, work.limits.data(),
+                work.few.data());
+    any = {};
+    for (std::size_t c = 0; c < channels_; ++c) {
+      if (work.records.reference[c] == 0 && !work.faint[c].none())
+        work.faint[c] = faint_voxels(sum(work, c), least(work, c), work.sums.plain.data(), static_cast<float>(rim),
+                                     work.few[c] + static_cast<float>(faint / small), active);
+      any |= work.faint[c];
+    }
+    return any;
+  }
+  static float least(const LeafWork& work, std::size_t channel) {
+    return static_cast<float>(faint) * work.records.largest[channel];
   }
 
   void sum_again(const Coord& origin, const LeafMask& active, LeafWork& work) const {
-    LeafMask any;
-    work.faint.resize(channels_);
-    for (std::size_t c = 0; c < channels_; ++c) {
-      work.faint[c] = faint_of(c, active, work);
-      any |= work.faint[c];
-    }
+    const LeafMask any = find_faint(active, work);
     if (any.none()) return;
     for (int x = 0; x < leaf_edge; x += 4)
       for (int y = 0; y < leaf_edge; y += 4)
@@ -160,15 +161,13 @@ class FastSplat {
       if (const double w = kernel_.value(r2); w > 0)
         terms.push_back({w, work.records.values.data() + in_leaf * records_.stride()});
     }
-    const auto sum = [&](std::size_t channel) {
-      double total = 0;
-      for (const ExactTerm& t : terms) total += t.w * static_cast<double>(t.record[channel]);
-      return records_.scale(channel) * total;
-    };
+    work.exact.resize(records_.stride());
+    sum_terms(terms.data(), terms.size(), records_.stride(), work.exact.data());
     for (std::size_t c = 0; c < channels_; ++c) {
       if (!work.faint[c].test(static_cast<int>(offset))) continue;
-      const double reference = work.records.reference[c];
-      work.values[c * leaf_size + offset] = sum(c) + (reference == 0 ? 0 : reference * sum(weight(c)));
+      const std::size_t w = weight(c);
+      work.values[c * leaf_size + offset] =
+          records_.scale(c) * work.exact[c] + work.records.reference[c] * records_.scale(w) * work.exact[w];
     }
   }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.hpp"
 
@@ -38,22 +39,40 @@ namespace grainvdb {
 namespace HWY_NAMESPACE {
 namespace {
 
+// One part of all records, as wide as the tag. The largest magnitudes stay in a register.
+template <class Tag>
+void CopyPart(const RecordCopy& copy, Tag tag, std::size_t c) {
+  auto largest = hn::LoadU(tag, copy.largest + c);
+  const float* HWY_RESTRICT from = copy.from + c;
+  float* HWY_RESTRICT to = copy.to + c;
+  if (copy.weights == 1) {
+    const auto shift = hn::LoadU(tag, copy.shift + c);
+    const float* HWY_RESTRICT weight = copy.from + copy.weight[0];
+    for (std::size_t k = 0; k < copy.count; ++k) {
+      const std::size_t at = copy.entry[k] * copy.stride;
+      const auto v = hn::MulAdd(shift, hn::Set(tag, weight[at]), hn::LoadU(tag, from + at));
+      hn::StoreU(v, tag, to + k * copy.stride);
+      largest = hn::Max(largest, hn::Abs(v));
+    }
+  } else {
+    for (std::size_t k = 0; k < copy.count; ++k) {
+      const std::size_t at = copy.entry[k] * copy.stride;
+      auto v = hn::LoadU(tag, from + at);
+      for (std::size_t w = 0; w < copy.weights; ++w)
+        v = hn::MulAdd(hn::LoadU(tag, copy.shift + w * copy.stride + c), hn::Set(tag, copy.from[at + copy.weight[w]]),
+                       v);
+      hn::StoreU(v, tag, to + k * copy.stride);
+      largest = hn::Max(largest, hn::Abs(v));
+    }
+  }
+  hn::StoreU(largest, tag, copy.largest + c);
+}
+
 void CopyRecords(const RecordCopy& copy) {
   const hn::CappedTag<float, 4> d4;  // records are padded to four
-  for (std::size_t k = 0; k < copy.count; ++k) {
-    const float* HWY_RESTRICT from = copy.from + copy.entry[k] * copy.stride;
-    float* HWY_RESTRICT to = copy.to + k * copy.stride;
-    const auto copy_part = [&](auto tag, std::size_t c) {
-      auto v = hn::LoadU(tag, from + c);
-      for (std::size_t w = 0; w < copy.weights; ++w)
-        v = hn::MulAdd(hn::LoadU(tag, copy.shift + w * copy.stride + c), hn::Set(tag, from[copy.weight[w]]), v);
-      hn::StoreU(v, tag, to + c);
-      hn::StoreU(hn::Max(hn::LoadU(tag, copy.largest + c), hn::Abs(v)), tag, copy.largest + c);
-    };
-    std::size_t c = 0;
-    for (; c + lanes <= copy.stride; c += lanes) copy_part(d, c);
-    for (; c < copy.stride; c += hn::Lanes(d4)) copy_part(d4, c);
-  }
+  std::size_t c = 0;
+  for (; c + lanes <= copy.stride; c += lanes) CopyPart(copy, d, c);
+  for (; c < copy.stride; c += hn::Lanes(d4)) CopyPart(copy, d4, c);
 }
 
 }  // namespace
@@ -97,47 +116,54 @@ Records::Records(const Buckets& buckets, std::span<const double> q, std::span<co
       spread_(buckets.cells.size() * channels_) {
   for (std::size_t n = 0; n < q.size(); n += channels_)
     for (std::size_t c = 0; c < channels_; ++c) scale_[c] = std::max(scale_[c], std::abs(q[n + c]));
-  for (double& scale : scale_)
-    if (scale == 0) scale = 1;
+  std::vector<double> inverse(channels_);
+  for (std::size_t c = 0; c < channels_; ++c) {
+    if (scale_[c] == 0) scale_[c] = 1;
+    inverse[c] = 1 / scale_[c];
+  }
 
   float* const values = values_.room(buckets.point.size() * stride_);
   parallel_for(buckets.cells.size(), [&](std::size_t cell) {
     const std::size_t begin = buckets.start[cell];
     const std::size_t end = buckets.start[cell + 1];
-    choose_references(cell, begin, end, q, buckets);
+    for (const WeighedChannels& w : weighed_) choose_references(cell, w, q);
     const double* reference = reference_.data() + cell * channels_;
     for (std::size_t e = begin; e < end; ++e) {
       const double* from = q.data() + buckets.point[e] * channels_;
       float* to = values + e * stride_;
-      for (std::size_t c = 0; c < channels_; ++c) to[c] = static_cast<float>(from[c] / scale_[c]);
+      for (std::size_t c = 0; c < channels_; ++c) to[c] = static_cast<float>(from[c] * inverse[c]);
       for (std::size_t c = channels_; c < stride_; ++c) to[c] = 0;
       for (const WeighedChannels& w : weighed_)
         for (const std::size_t c : w.channels)
-          to[c] = static_cast<float>((from[c] - reference[c] * from[w.weight]) / scale_[c]);
+          to[c] = static_cast<float>((from[c] - reference[c] * from[w.weight]) * inverse[c]);
     }
   });
 }
 
-void Records::choose_references(std::size_t cell, std::size_t begin, std::size_t end, std::span<const double> q,
-                                const Buckets& buckets) {
-  const auto value = [&](std::size_t e, std::size_t c) { return q[buckets.point[e] * channels_ + c]; };
-  for (const WeighedChannels& w : weighed_)
-    for (const std::size_t c : w.channels) {
-      double above = 0;
-      double below = 0;
-      for (std::size_t e = begin; e < end; ++e) {
-        above += value(e, c);
-        below += value(e, w.weight);
-      }
-      if (!(below > 0)) continue;
-      const double mean = above / below;
-      double spread = 0;
-      for (std::size_t e = begin; e < end; ++e)
-        spread = std::max(spread, std::abs(value(e, c) / value(e, w.weight) - mean));
-      if (!(spread <= 0.5 * std::abs(mean))) continue;
-      reference_[cell * channels_ + c] = mean;
-      spread_[cell * channels_ + c] = spread;
-    }
+void Records::choose_references(std::size_t cell, const WeighedChannels& weighed, std::span<const double> q) {
+  const std::size_t begin = buckets_.start[cell];
+  const std::size_t end = buckets_.start[cell + 1];
+  const auto record = [&](std::size_t e) { return q.data() + buckets_.point[e] * channels_; };
+  double least = std::numeric_limits<double>::infinity();  // of the weights
+  double weights = 0;
+  for (std::size_t e = begin; e < end; ++e) {
+    const double w = record(e)[weighed.weight];
+    least = std::min(least, w);
+    weights += w;
+  }
+  if (!(least > 0)) return;
+  for (const std::size_t c : weighed.channels) {
+    double sum = 0;
+    for (std::size_t e = begin; e < end; ++e) sum += record(e)[c];
+    const double mean = sum / weights;
+    double apart = 0;  // largest |w (q - mean)|
+    for (std::size_t e = begin; e < end; ++e)
+      apart = std::max(apart, std::abs(record(e)[c] - mean * record(e)[weighed.weight]));
+    const double spread = apart / least;
+    if (!(spread <= 0.5 * std::abs(mean))) continue;
+    reference_[cell * channels_ + c] = mean;
+    spread_[cell * channels_ + c] = spread;
+  }
 }
 
 double Records::leaf_reference(const Coord& leaf, const LeafCandidates& candidates, std::size_t channel) const {

@@ -18,7 +18,7 @@ struct WeighedChannels {
 };
 
 /// Records [entry][stride] of w (q - r)/scale, where r is a reference of the entry's cell: the mean of q over the cell
-/// when every q lies within half of it, else 0. So |q| is at least half the reference wherever there is one, and the
+/// when every q certainly lies within half of it, else 0. So |q| is at least half the reference wherever there is one, and the
 /// rounding of w (q - r) stays small against |w q|. `scale` is the largest |w q| of a channel over the frame: units do
 /// not matter to the range of single precision.
 class Records {
@@ -40,8 +40,7 @@ class Records {
   void gather(const Coord& leaf, const LeafCandidates& candidates, OfLeaf& out) const;
 
  private:
-  void choose_references(std::size_t cell, std::size_t begin, std::size_t end, std::span<const double> q,
-                         const Buckets& buckets);
+  void choose_references(std::size_t cell, const WeighedChannels& weighed, std::span<const double> q);
   double leaf_reference(const Coord& leaf, const LeafCandidates& candidates, std::size_t channel) const;
 
   const Buckets& buckets_;
@@ -51,7 +50,7 @@ class Records {
   std::vector<double> scale_;
   Grow<float> values_;
   std::vector<double> reference_;  // [cell][channel]
-  std::vector<double> spread_;     // [cell][channel], largest |q - r| of the cell
+  std::vector<double> spread_;     // [cell][channel], no |q - r| of the cell is larger
 };
 
 }  // namespace grainvdb

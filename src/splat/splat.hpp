@@ -33,6 +33,9 @@ LeafBuffers splat_particles_fast(const Lattice& lattice, const LucyKernel& kerne
 /// different leaves at the same time.
 using LeafConsumer = std::function<void(std::size_t leaf, const double* values)>;
 
+/// Rounds values to single precision, as grids hold them; `count` is a multiple of 8.
+void narrow(const double* from, std::size_t count, float* to);
+
 /// The same sums, handed over leaf by leaf while they are in the cache, with no buffer for all of them.
 void splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
                           const Topology& topology, std::span<const double> q, std::span<const int> weight_of,
