@@ -91,18 +91,36 @@ inline HWY_NOINLINE std::size_t pick(const float* HWY_RESTRICT x, const float* H
   return n;
 }
 
-/// sums[channel][lane] = Σ_k weights[k][lane] q[chosen[k]][channel], all sums in registers.
-template <int channels>
+/// Values of a candidate are kept in records of a multiple of four.
+constexpr std::size_t record_stride(std::size_t channels) {
+  return (channels + 3) / 4 * 4;
+}
+
+/// sums[channel][lane] = Σ_k weights[k][lane] q[chosen[k]][channel], all sums in registers. `fixed_stride` is the
+/// stride of q, or 0 when it is only known at run time.
+///
+/// A multiplication takes a broadcast of one value from memory, and the processor loads as many as it multiplies: with
+/// the weight and the place that is more than it can load. So with 16 lanes the last few values come from one load of
+/// the record and permutations, which other ports do.
+template <int channels, std::size_t fixed_stride>
 HWY_NOINLINE void sum_channels(const float* HWY_RESTRICT weights, const float* HWY_RESTRICT q, std::size_t stride,
                                const std::int32_t* HWY_RESTRICT chosen, std::size_t count, float* HWY_RESTRICT sums) {
+  constexpr int permuted = lanes == 16 && channels <= 16 ? (channels / 3 < 4 ? channels / 3 : 4) : 0;
+  constexpr int loaded = channels - permuted;
   V s[channels];
 #pragma GCC unroll 32
   for (int c = 0; c < channels; ++c) s[c] = hn::Zero(d);
   for (std::size_t k = 0; k < count; ++k) {
     const V w = hn::Load(d, weights + k * lanes);
-    const float* HWY_RESTRICT v = q + static_cast<std::size_t>(chosen[k]) * stride;
+    const float* HWY_RESTRICT v = q + static_cast<std::size_t>(chosen[k]) * (fixed_stride == 0 ? stride : fixed_stride);
 #pragma GCC unroll 32
-    for (int c = 0; c < channels; ++c) s[c] = hn::MulAdd(w, hn::Set(d, v[c]), s[c]);
+    for (int c = 0; c < loaded; ++c) s[c] = hn::MulAdd(w, hn::Set(d, v[c]), s[c]);
+    if constexpr (permuted > 0) {
+      const V record = hn::LoadU(d, v);
+#pragma GCC unroll 32
+      for (int c = loaded; c < channels; ++c)
+        s[c] = hn::MulAdd(w, hn::TableLookupLanes(record, hn::IndicesFromVec(d, hn::Set(di, c))), s[c]);
+    }
   }
 #pragma GCC unroll 32
   for (int c = 0; c < channels; ++c) hn::Store(s[c], d, sums + c * lanes);
@@ -112,11 +130,17 @@ using Sum = void (*)(const float*, const float*, std::size_t, const std::int32_t
 // Accumulators that fit the registers (16, or 32 with AVX-512) beside the weight and the broadcast.
 constexpr int widest = lanes == 16 ? 24 : 14;
 
-template <int... c>
+template <bool stride_known, int... c>
 constexpr std::array<Sum, sizeof...(c) + 1> sums_for(std::integer_sequence<int, c...>) {
-  return {nullptr, sum_channels<c + 1>...};
+  return {nullptr, sum_channels<c + 1, stride_known ? record_stride(c + 1) : 0>...};
 }
-constexpr auto sum_of = sums_for(std::make_integer_sequence<int, widest>());
+constexpr auto sum_of_record = sums_for<true>(std::make_integer_sequence<int, widest>());
+constexpr auto sum_of_part = sums_for<false>(std::make_integer_sequence<int, widest>());
+
+/// The sum over `channels` of the values in records of `stride`.
+HWY_INLINE Sum sum_of(std::size_t channels, std::size_t stride) {
+  return (record_stride(channels) == stride ? sum_of_record : sum_of_part)[channels];
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace grainvdb

@@ -1,5 +1,6 @@
 #include "splat/bricks.hpp"
 
+#include <array>
 #include <cstring>
 
 #undef HWY_TARGET_INCLUDE
@@ -15,26 +16,56 @@ namespace grainvdb {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// weights[k][lane] = (1-r)³(1+3r) of candidate chosen[k] at the brick's voxels, 0 outside the support. The factored
-/// form never turns positive outside. Returns their sum.
+/// (1-r)³(1+3r) of a candidate at the brick's voxels, 0 outside the support. The factored form never turns positive
+/// outside.
+HWY_INLINE V weight(const Voxels& at, float x, float y, float z) {
+  const V one = hn::Set(d, 1.0F), three = hn::Set(d, 3.0F);
+  const V dx = hn::Sub(at.x, hn::Set(d, x)), dy = hn::Sub(at.y, hn::Set(d, y)), dz = hn::Sub(at.z, hn::Set(d, z));
+  const V r2 = hn::Min(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), one);
+  const V r = hn::Sqrt(r2);
+  const V p = hn::Sub(one, r);
+  return hn::Mul(hn::Mul(hn::Mul(p, p), p), hn::MulAdd(three, r, one));
+}
+
+/// weights[k][lane] of candidate chosen[k]. Returns their sum.
 HWY_NOINLINE V weigh(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z,
                      const std::int32_t* HWY_RESTRICT chosen, std::size_t count, Voxels at,
                      float* HWY_RESTRICT weights) {
-  const V one = hn::Set(d, 1.0F), three = hn::Set(d, 3.0F);
   V sum = hn::Zero(d);
   for (std::size_t k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(chosen[k]);
-    const V dx = hn::Sub(at.x, hn::Set(d, x[i])), dy = hn::Sub(at.y, hn::Set(d, y[i])),
-            dz = hn::Sub(at.z, hn::Set(d, z[i]));
-    const V r2 = hn::Min(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), one);
-    const V r = hn::Sqrt(r2);
-    const V p = hn::Sub(one, r);
-    const V w = hn::Mul(hn::Mul(hn::Mul(p, p), p), hn::MulAdd(three, r, one));
+    const V w = weight(at, x[i], y[i], z[i]);
     sum = hn::Add(sum, w);
     hn::Store(w, d, weights + k * lanes);
   }
   return sum;
 }
+
+/// Weights and sums of few channels in one loop: it saves storing the weights, where with more channels the square root
+/// would wait for the sums.
+template <int channels>
+HWY_NOINLINE void weigh_and_sum(const Picked& near, const float* HWY_RESTRICT q, const std::int32_t* HWY_RESTRICT chosen,
+                                std::size_t count, Voxels at, float* HWY_RESTRICT plain, float* HWY_RESTRICT sums) {
+  const float *HWY_RESTRICT x = near.x.data(), *HWY_RESTRICT y = near.y.data(), *HWY_RESTRICT z = near.z.data();
+  V all = hn::Zero(d);
+  V s[channels];
+#pragma GCC unroll 4
+  for (int c = 0; c < channels; ++c) s[c] = hn::Zero(d);
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto i = static_cast<std::size_t>(chosen[k]);
+    const V w = weight(at, x[i], y[i], z[i]);
+    all = hn::Add(all, w);
+#pragma GCC unroll 4
+    for (int c = 0; c < channels; ++c)
+      s[c] = hn::MulAdd(w, hn::Set(d, q[i * record_stride(channels) + static_cast<std::size_t>(c)]), s[c]);
+  }
+  hn::Store(all, d, plain);
+#pragma GCC unroll 4
+  for (int c = 0; c < channels; ++c) hn::Store(s[c], d, sums + c * lanes);
+}
+using WeighAndSum = void (*)(const Picked&, const float*, const std::int32_t*, std::size_t, Voxels, float*, float*);
+constexpr std::array<WeighAndSum, 5> weigh_and_sum_of{nullptr, weigh_and_sum<1>, weigh_and_sum<2>, weigh_and_sum<3>,
+                                                      weigh_and_sum<4>};
 
 /// Copies the lanes of a brick to their voxels.
 HWY_INLINE void put(const float* HWY_RESTRICT lane, const VoxelBox& brick, float* HWY_RESTRICT voxels) {
@@ -54,16 +85,26 @@ void SumBrick(const LeafSplat& leaf, const VoxelBox& brick, LeafSums& out) {
                      1.0F};
   std::int32_t* const chosen = out.chosen.data();
   const std::size_t m = pick(near.x.data(), near.y.data(), near.z.data(), near.count, test, chosen);
+  const Voxels at = brick_voxels(brick, h);
+  HWY_ALIGN float plain[lanes];
   HWY_ALIGN float sums[widest * lanes];
-  hn::Store(
-      weigh(near.x.data(), near.y.data(), near.z.data(), chosen, m, brick_voxels(brick, h), out.weights.data()), d,
-      sums);
-  put(sums, brick, out.plain.data());
-  for (int first = 0; first < leaf.channels; first += widest) {
-    const int now = leaf.channels - first < widest ? leaf.channels - first : widest;
-    sum_of[static_cast<std::size_t>(now)](out.weights.data(), out.values.data() + first, leaf.stride, chosen, m, sums);
-    for (int c = 0; c < now; ++c) put(sums + c * lanes, brick, out.sums.data() + (first + c) * leaf_size);
+  const auto deliver = [&](int first, int count) {
+    for (int c = 0; c < count; ++c) put(sums + c * lanes, brick, out.sums.data() + (first + c) * leaf_size);
+  };
+  if (const auto channels = static_cast<std::size_t>(leaf.channels); channels < weigh_and_sum_of.size()) {
+    weigh_and_sum_of[channels](near, out.values.data(), chosen, m, at, plain, sums);
+    deliver(0, leaf.channels);
+  } else {
+    float* const weights = out.weights.data();
+    hn::Store(weigh(near.x.data(), near.y.data(), near.z.data(), chosen, m, at, weights), d, plain);
+    for (int first = 0; first < leaf.channels; first += widest) {
+      const int now = leaf.channels - first < widest ? leaf.channels - first : widest;
+      sum_of(static_cast<std::size_t>(now), leaf.stride)(weights, out.values.data() + first, leaf.stride, chosen, m,
+                                                         sums);
+      deliver(first, now);
+    }
   }
+  put(plain, brick, out.plain.data());
 }
 
 bool any_active(const LeafMask& active, const VoxelBox& box, int nx, int ny, int nz) {

@@ -99,17 +99,12 @@ std::vector<WeighedChannels> by_weight(std::span<const int> weight_of) {
   return all;
 }
 
-// One value alone, two, or a multiple of four.
-std::size_t stride_for(std::size_t channels) {
-  return (channels + 3) / 4 * 4;
-}
-
 }  // namespace
 
 Records::Records(const Buckets& buckets, std::span<const double> q, std::span<const int> weight_of)
     : buckets_(buckets),
       channels_(weight_of.size()),
-      stride_(stride_for(weight_of.size())),
+      stride_((weight_of.size() + 3) / 4 * 4),
       weighed_(by_weight(weight_of)),
       scale_(channels_, 0.0),
       reference_(buckets.cells.size() * channels_),
