@@ -7,9 +7,6 @@
 
 namespace grainvdb {
 
-MomentMeans::MomentMeans(LeafBuffers values, LeafBuffers frame_count, std::map<std::string, int> first_channel)
-    : values_(std::move(values)), frame_count_(std::move(frame_count)), first_channel_(std::move(first_channel)) {}
-
 std::size_t MomentSums::CoordHash::operator()(const Coord& c) const noexcept {
   // Leaf origins are multiples of 8; three odd multipliers spread neighbours over the table.
   const auto u = [](std::int32_t i) { return static_cast<std::size_t>(static_cast<std::uint32_t>(i) >> 3U); };
@@ -19,9 +16,15 @@ std::size_t MomentSums::CoordHash::operator()(const Coord& c) const noexcept {
 MomentSums::MomentSums(const std::vector<MomentPtr>& moments) {
   int channels = 0;
   for (const MomentPtr& m : moments)
-    if (first_channel_.emplace(m->name, channels).second) channels += m->channels;
+    if (first_channel_.emplace(m->name, channels).second) {
+      count_[m->name] = m->channels;
+      channels += m->channels;
+    }
   channels_ = static_cast<std::size_t>(channels);
 }
+
+MomentSums::MomentSums(MomentSums&&) noexcept = default;
+MomentSums::~MomentSums() = default;
 
 MomentSums::Leaf& MomentSums::leaf(const Coord& origin) {
   auto& slot = leaves_[origin];
@@ -40,21 +43,31 @@ bool MomentSums::wants(const Moment& moment) const {
   return first_channel_.contains(moment.name) && !complete_.contains(moment.name);
 }
 
-void MomentSums::add(const Moment& moment, const LeafBuffers& part, int channel) {
-  added_.insert(moment.name);
-  const auto first = static_cast<std::size_t>(first_channel_.at(moment.name));
-  const Topology& topology = *part.topology();
-  std::vector<Leaf*> targets(topology.leaf_count());
-  for (std::size_t l = 0; l < targets.size(); ++l) targets[l] = &leaf(topology.origin(l));
-  parallel_for(targets.size(), [&](std::size_t l) {
-    Leaf& to = *targets[l];
-    to.reached |= topology.mask(l);
-    for (int c = 0; c < moment.channels; ++c) {
-      const double* from = part.block(l, channel + c);
-      double* sum = to.sums.data() + (first + static_cast<std::size_t>(c)) * leaf_size;
-      for (int v = 0; v < leaf_size; ++v) sum[v] += from[v];
-    }
-  });
+MomentSums::Target MomentSums::target(const std::vector<MomentPtr>& moments, const Topology& topology) {
+  Target target;
+  if (moments.empty()) return target;
+  for (const MomentPtr& m : moments) {
+    added_.insert(m->name);
+    target.moments_.push_back(
+        {static_cast<std::size_t>(first_channel_.at(m->name)), static_cast<std::size_t>(m->channels)});
+  }
+  target.leaves_.resize(topology.leaf_count());
+  for (std::size_t l = 0; l < target.leaves_.size(); ++l) {
+    target.leaves_[l] = &leaf(topology.origin(l));
+    target.leaves_[l]->reached |= topology.mask(l);
+  }
+  return target;
+}
+
+void MomentSums::Target::add(std::size_t leaf, std::size_t k, const double* values) const {
+  double* sum = leaves_[leaf]->sums.data() + moments_[k].first * leaf_size;
+  const std::size_t n = moments_[k].count * leaf_size;
+  for (std::size_t i = 0; i < n; ++i) sum[i] += values[i];
+}
+
+void MomentSums::add(const MomentPtr& moment, const LeafBuffers& part, int channel) {
+  const Target to = target({moment}, *part.topology());
+  parallel_for(part.topology()->leaf_count(), [&](std::size_t l) { to.add(l, 0, part.block(l, channel)); });
 }
 
 void MomentSums::end_frame() {
@@ -66,12 +79,21 @@ void MomentSums::end_frame() {
   }
 }
 
-void MomentSums::end_sweep() {
+void MomentSums::end_sweep(std::size_t frames) {
+  std::vector<Leaf*> all;
+  for (const auto& [origin, leaf] : leaves_) all.push_back(leaf.get());
+  const auto n = static_cast<double>(frames);
+  parallel_for(all.size(), [&](std::size_t l) {
+    for (const std::string& name : added_) {
+      double* sum = all[l]->sums.data() + static_cast<std::size_t>(first_channel_.at(name)) * leaf_size;
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count_.at(name)) * leaf_size; ++i) sum[i] /= n;
+    }
+  });
   complete_.merge(added_);
   added_.clear();
 }
 
-MomentMeans MomentSums::means(const std::vector<MomentPtr>& subset, std::size_t frames) const {
+MomentMeans MomentSums::means() const {
   std::vector<Coord> origins;
   std::vector<LeafMask> masks;
   origins.reserve(leaves_.size());
@@ -80,30 +102,16 @@ MomentMeans MomentSums::means(const std::vector<MomentPtr>& subset, std::size_t 
     origins.push_back(origin);
     masks.push_back(leaf->mask);
   }
-  const auto topology = std::make_shared<const Topology>(std::move(origins), std::move(masks));
-
-  std::map<std::string, int> first_channel;
-  std::vector<std::pair<std::size_t, std::size_t>> copies;  // channel in the sums → channel in the means
-  int channels = 0;
-  for (const MomentPtr& m : subset) {
-    if (!first_channel.emplace(m->name, channels).second) continue;
-    for (int c = 0; c < m->channels; ++c) copies.emplace_back(first_channel_.at(m->name) + c, channels + c);
-    channels += m->channels;
+  LeafBlocks values{std::make_shared<const Topology>(std::move(origins), std::move(masks)), {}};
+  std::vector<const double*> frame_counts;
+  for (const Coord& origin : values.topology->origins()) {
+    const Leaf& leaf = *leaves_.at(origin);
+    values.leaves.push_back(leaf.sums.data());
+    frame_counts.push_back(leaf.frames.data());
   }
-
-  LeafBuffers values(topology, channels);
-  LeafBuffers counts(topology, 1);
-  const double n = static_cast<double>(frames);
-  parallel_for(topology->leaf_count(), [&](std::size_t l) {
-    const Leaf& from = *leaves_.at(topology->origin(l));
-    for (const auto& [source, target] : copies) {
-      const double* sum = from.sums.data() + source * leaf_size;
-      double* to = values.block(l, static_cast<int>(target));
-      for (int v = 0; v < leaf_size; ++v) to[v] = sum[v] / n;
-    }
-    std::copy(from.frames.begin(), from.frames.end(), counts.block(l, 0));
-  });
-  return {std::move(values), std::move(counts), std::move(first_channel)};
+  std::map<std::string, int> first_channel;
+  for (const std::string& name : complete_) first_channel[name] = first_channel_.at(name);
+  return {std::move(values), std::move(frame_counts), std::move(first_channel)};
 }
 
 }  // namespace grainvdb

@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "grainvdb/leaf_buffers.hpp"
@@ -15,42 +16,69 @@
 
 namespace grainvdb {
 
-/// The time means of a window: all moments on one topology.
+/// The time means of a window: all moments on one topology. A view of the sums they were formed in, which must outlive
+/// it.
 class MomentMeans {
  public:
-  MomentMeans(LeafBuffers values, LeafBuffers frame_count, std::map<std::string, int> first_channel);
-  const std::shared_ptr<const Topology>& topology() const { return values_.topology(); }
-  const LeafBuffers& values() const { return values_; }
-  /// Where a moment's channels start. The moment must be among those that were summed (std::out_of_range).
+  MomentMeans(LeafBlocks values, std::vector<const double*> frame_counts, std::map<std::string, int> first_channel)
+      : values_(std::move(values)), frame_counts_(std::move(frame_counts)), first_channel_(std::move(first_channel)) {}
+
+  const std::shared_ptr<const Topology>& topology() const { return values_.topology; }
+  const LeafBlocks& values() const { return values_; }
+  /// Where a moment's channels start. The moment must be among those that are complete (std::out_of_range).
   int first_channel(const Moment& moment) const { return first_channel_.at(moment.name); }
   const double* block(std::size_t leaf, const Moment& moment, int channel) const {
     return values_.block(leaf, first_channel(moment) + channel);
   }
-  const double* frame_count(std::size_t leaf) const { return frame_count_.block(leaf, 0); }
+  const double* frame_count(std::size_t leaf) const { return frame_counts_[leaf]; }
 
  private:
-  LeafBuffers values_;
-  LeafBuffers frame_count_;
+  LeafBlocks values_;
+  std::vector<const double*> frame_counts_;
   std::map<std::string, int> first_channel_;
 };
 
 /// Adds up frames one after another: every voxel's terms are added in the order of the frames, whatever the threads do.
 class MomentSums {
+  struct Leaf;
+
  public:
   explicit MomentSums(const std::vector<MomentPtr>& moments);
+  MomentSums(MomentSums&&) noexcept;
+  ~MomentSums();
 
   /// Whether a moment is to be summed in the current sweep: it is among those asked for, and no earlier sweep summed
   /// it.
   bool wants(const Moment& moment) const;
-  /// Adds a moment of the current frame: its channels start at `channel` of `part`.
-  void add(const Moment& moment, const LeafBuffers& part, int channel);
+
+  /// The place in the sums for some moments of the current frame on one topology.
+  class Target {
+   public:
+    /// Adds the values of moment k in a leaf of that topology, laid out [channel][offset]. Concurrent calls for
+    /// different leaves are safe.
+    void add(std::size_t leaf, std::size_t k, const double* values) const;
+
+   private:
+    friend class MomentSums;
+    struct Channels {
+      std::size_t first, count;
+    };
+    std::vector<Channels> moments_;
+    std::vector<Leaf*> leaves_;
+  };
+  /// All moments must be wanted (std::out_of_range for one that is not known). Their voxels are those that the frame
+  /// reached.
+  Target target(const std::vector<MomentPtr>& moments, const Topology& topology);
+  /// Adds one moment whose channels start at `channel` of `part`.
+  void add(const MomentPtr& moment, const LeafBuffers& part, int channel);
+
   /// Ends a frame. In the first sweep every voxel that its moments reached gains one sample.
   void end_frame();
-  /// Ends a sweep: what it summed is complete.
-  void end_sweep();
+  /// Ends a sweep over `frames` frames: what it summed is complete, and becomes a mean.
+  void end_sweep(std::size_t frames);
 
-  /// The mean of a subset of the moments so far, over `frames` frames.
-  MomentMeans means(const std::vector<MomentPtr>& subset, std::size_t frames) const;
+  /// The means of the moments that are complete. A further sweep leaves them alone.
+  MomentMeans means() const;
 
   /// Bytes that `leaves` leaves of sums take.
   std::size_t bytes(std::size_t leaves) const;
@@ -70,8 +98,9 @@ class MomentSums {
 
   std::map<std::string, int> first_channel_;
   std::size_t channels_ = 0;
-  std::set<std::string> added_;     // in the current sweep
-  std::set<std::string> complete_;  // in earlier sweeps
+  std::map<std::string, int> count_;  // channels of each moment
+  std::set<std::string> added_;       // in the current sweep
+  std::set<std::string> complete_;    // in earlier sweeps
   std::unordered_map<Coord, std::unique_ptr<Leaf>, CoordHash> leaves_;
 };
 

@@ -19,6 +19,12 @@ LeafBuffers::LeafBuffers(std::shared_ptr<const Topology> topology, int channels)
   data_ = {static_cast<double*>(pages), PageUnmapper{size}};
 }
 
+LeafBlocks LeafBuffers::blocks() const {
+  LeafBlocks all{topology_, std::vector<const double*>(topology_->leaf_count())};
+  for (std::size_t l = 0; l < all.leaves.size(); ++l) all.leaves[l] = block(l, 0);
+  return all;
+}
+
 void PageUnmapper::operator()(double* pages) const {
   munmap(pages, bytes);
 }

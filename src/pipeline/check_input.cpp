@@ -61,7 +61,9 @@ void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& latt
                  std::size_t k) {
   ColumnSet all;
   for (const Sweep& s : plan.sweeps) all |= s.columns;
-  const FrameContext checked(source.read(k, all), pipeline, lattice, LucyKernel(pipeline.cutoff), nullptr);
+  const std::set<std::string> nothing_kept;
+  const FrameContext checked(source.read(k, all), pipeline, lattice, LucyKernel(pipeline.cutoff), nothing_kept,
+                             nullptr);
 }
 
 Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source) {

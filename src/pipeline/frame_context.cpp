@@ -105,8 +105,8 @@ void apply_selection(const Selection& selection, const Box& box, Particles& part
 }
 
 FrameContext::FrameContext(Frame frame, const Pipeline& pipeline, const Lattice& lattice, const LucyKernel& kernel,
-                           const MomentMeans* means)
-    : pipeline_(pipeline), lattice_(lattice), kernel_(kernel), means_(means), frame_(std::move(frame)) {
+                           const std::set<std::string>& kept, const MomentMeans* means)
+    : pipeline_(pipeline), lattice_(lattice), kernel_(kernel), kept_(kept), means_(means), frame_(std::move(frame)) {
   if (frame_.contacts.size() > 0) {
     branches_ = half_branches(frame_);
     frame_.contacts = {};
@@ -126,9 +126,9 @@ void FrameContext::bucket_particles() {
 }
 
 void FrameContext::check_memory(std::size_t leaves, int values, const MomentSums& sums) const {
-  // Splat buffers of this group, the sums, and their mean when the window ends.
+  // Splat buffers of this group, and the sums.
   const double need = static_cast<double>(leaves) * leaf_size * sizeof(double) * values +
-                      2.0 * static_cast<double>(sums.bytes(std::max(leaves, sums.leaf_count())));
+                      static_cast<double>(sums.bytes(std::max(leaves, sums.leaf_count())));
   const double limit = memory_limit(pipeline_.limits);
   if (need <= limit) return;
   throw LimitError(
@@ -207,7 +207,11 @@ void FrameContext::splat_group(const Group& group, MomentSums& sums) {
     bucket_particles();
     check_memory(topology_->leaf_count(), channels, sums);
   }
-  keep(splat(group, values), group, sums);
+  if (group[0]->kind == Moment::Kind::particles && !group[0]->in_double) {
+    splat_fast(group, values, sums);
+  } else {
+    keep(splat(group, values), group, sums);
+  }
 }
 
 LeafBuffers FrameContext::splat(const Group& group, const Values& values) const {
@@ -218,10 +222,48 @@ LeafBuffers FrameContext::splat(const Group& group, const Values& values) const 
     case Moment::Kind::particle_gradients:
       return splat_particle_gradients(lattice_, kernel_, *buckets_, topology_, values.q, channels);
     default:
-      return group[0]->in_double
-                 ? splat_particles(lattice_, kernel_, *buckets_, topology_, values.q, channels)
-                 : splat_particles_fast(lattice_, kernel_, *buckets_, topology_, values.q, values.weight_of);
+      return splat_particles(lattice_, kernel_, *buckets_, topology_, values.q, channels);
   }
+}
+
+void FrameContext::splat_fast(const Group& group, const Values& values, MomentSums& sums) {
+  struct Part {
+    std::size_t from, channels;  // of the splat
+    int to = 0;                  // channel of the buffer
+  };
+  std::vector<Part> summed;
+  std::vector<Part> kept;
+  std::vector<MomentPtr> wanted;
+  std::size_t from = 0;
+  int to = 0;
+  for (const MomentPtr& m : group) {
+    const auto channels = static_cast<std::size_t>(m->channels);
+    if (sums.wants(*m)) {
+      summed.push_back({from, channels});
+      wanted.push_back(m);
+    }
+    if (kept_.contains(m->name)) {
+      kept.push_back({from, channels, to});
+      to += m->channels;
+    }
+    from += channels;
+  }
+  auto buffers = std::make_unique<LeafBuffers>(topology_, to);
+  const MomentSums::Target target = sums.target(wanted, *topology_);
+  splat_particles_fast(lattice_, kernel_, *buckets_, *topology_, values.q, values.weight_of,
+                       [&](std::size_t leaf, const double* all) {
+                         for (std::size_t k = 0; k < summed.size(); ++k)
+                           target.add(leaf, k, all + summed[k].from * leaf_size);
+                         for (const Part& p : kept)
+                           std::copy_n(all + p.from * leaf_size, p.channels * leaf_size, buffers->block(leaf, p.to));
+                       });
+  to = 0;
+  for (const MomentPtr& m : group)
+    if (kept_.contains(m->name)) {
+      places_[m->name] = {buffers.get(), to};
+      to += m->channels;
+    }
+  buffers_.push_back(std::move(buffers));
 }
 
 void FrameContext::keep(LeafBuffers buffers, const Group& group, MomentSums& sums) {
@@ -229,8 +271,13 @@ void FrameContext::keep(LeafBuffers buffers, const Group& group, MomentSums& sum
   int channel = 0;
   for (const MomentPtr& m : group) {
     places_[m->name] = {buffers_.back().get(), channel};
-    if (sums.wants(*m)) sums.add(*m, *buffers_.back(), channel);
+    if (sums.wants(*m)) sums.add(m, *buffers_.back(), channel);
     channel += m->channels;
+  }
+  const auto is_kept = [&](const MomentPtr& m) { return kept_.contains(m->name); };
+  if (std::none_of(group.begin(), group.end(), is_kept)) {
+    for (const MomentPtr& m : group) places_.erase(m->name);
+    buffers_.pop_back();
   }
 }
 
@@ -255,20 +302,20 @@ void FrameContext::combine_voxels(const Moment& moment, MomentSums& sums) {
 std::vector<Vec3> FrameContext::interpolate_frame(const Moment& numerator, const Moment& denominator) const {
   const Place n = places_.at(numerator.name);
   const Place d = places_.at(denominator.name);
-  return sample_trilinear(lattice_, {n.buffers, n.channel, d.buffers, d.channel}, frame_.particles.position);
+  return sample_trilinear(lattice_, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel}, frame_.particles.position);
 }
 
 std::vector<Vec3> FrameContext::interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
                                                           std::array<bool, 3> homogeneous) const {
   const Place n = places_.at(numerator.name);
   const Place d = places_.at(denominator.name);
-  return sample_profile(lattice_, {n.buffers, n.channel, d.buffers, d.channel}, frame_.particles.position, homogeneous);
+  return sample_profile(lattice_, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel}, frame_.particles.position, homogeneous);
 }
 
 std::vector<Vec3> FrameContext::interpolate_mean(const Moment& numerator, const Moment& denominator) const {
-  const LeafBuffers& values = means_->values();
+  const LeafBlocks& values = means_->values();
   return sample_trilinear(lattice_,
-                          {&values, means_->first_channel(numerator), &values, means_->first_channel(denominator)},
+                          {values, means_->first_channel(numerator), values, means_->first_channel(denominator)},
                           frame_.particles.position);
 }
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,9 +23,10 @@ void apply_selection(const Selection& selection, const Box& box, Particles& part
 
 class FrameContext : public FrameView {
  public:
-  /// Takes the frame; `means` are those of the sweep before, or nullptr.
+  /// Takes the frame. `kept` names the moments whose values other moments of the frame ask for; `means` are those of the
+  /// sweep before, or nullptr.
   FrameContext(Frame frame, const Pipeline& pipeline, const Lattice& lattice, const LucyKernel& kernel,
-               const MomentMeans* means);
+               const std::set<std::string>& kept, const MomentMeans* means);
 
   /// Splats the moments of one pass, in one splat per kind, and adds those that `sums` wants.
   void run_pass(const std::vector<MomentPtr>& pass, MomentSums& sums);
@@ -44,14 +46,16 @@ class FrameContext : public FrameView {
   };
   using Group = std::vector<MomentPtr>;
 
-  void splat_group(const Group& group, MomentSums& sums);
-  void combine_voxels(const Moment& moment, MomentSums& sums);
-  void keep(LeafBuffers buffers, const Group& group, MomentSums& sums);
   /// The values of all moments of a group, [entry][value], with the channel that weighs each value or -1.
   struct Values {
     std::vector<double> q;
     std::vector<int> weight_of;
   };
+  void splat_group(const Group& group, MomentSums& sums);
+  void combine_voxels(const Moment& moment, MomentSums& sums);
+  /// Splats into the sums, with no buffer but for the moments that are kept.
+  void splat_fast(const Group& group, const Values& values, MomentSums& sums);
+  void keep(LeafBuffers buffers, const Group& group, MomentSums& sums);
   /// Appends to the group the weights that it lacks.
   Values values_of(Group& group) const;
   LeafBuffers splat(const Group& group, const Values& values) const;
@@ -63,6 +67,7 @@ class FrameContext : public FrameView {
   const Pipeline& pipeline_;
   const Lattice& lattice_;
   const LucyKernel& kernel_;
+  const std::set<std::string>& kept_;
   const MomentMeans* means_;
   Frame frame_;
   HalfBranches branches_;

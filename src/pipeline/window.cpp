@@ -1,6 +1,8 @@
 #include "pipeline/window.hpp"
 
 #include <optional>
+#include <set>
+#include <string>
 
 #include "pipeline/frame_context.hpp"
 
@@ -19,6 +21,15 @@ OutputTime time_of(const FrameSource& source, std::span<const std::size_t> wante
   return t;
 }
 
+/// Names of the moments that others of the same frame are made of.
+std::set<std::string> needed_in_frame(const Sweep& sweep) {
+  std::set<std::string> names;
+  for (const auto& pass : sweep.passes)
+    for (const MomentPtr& m : pass)
+      for (const MomentPtr& need : m->frame_needs) names.insert(need->name);
+  return names;
+}
+
 }  // namespace
 
 WindowMoments average_window(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
@@ -30,20 +41,23 @@ WindowMoments average_window(const Pipeline& pipeline, const Plan& plan, const L
   std::size_t material = 0;
   for (std::size_t s = 0; s < plan.sweeps.size(); ++s) {
     const Sweep& sweep = plan.sweeps[s];
+    const std::set<std::string> kept = needed_in_frame(sweep);
     for (std::size_t k : wanted) {
       Frame frame = clock.time("read", [&] { return source.read(k, sweep.columns); });
       clock.time("splat", [&] {
-        FrameContext context(std::move(frame), pipeline, lattice, kernel, means ? &*means : nullptr);
+        FrameContext context(std::move(frame), pipeline, lattice, kernel, kept, means ? &*means : nullptr);
         material += context.particles().size();
         for (const auto& pass : sweep.passes) context.run_pass(pass, sums);
         sums.end_frame();
       });
       frame_done(s);
     }
-    sums.end_sweep();
-    clock.time("average", [&] { means.emplace(sums.means(plan.means, wanted.size())); });
+    clock.time("average", [&] {
+      sums.end_sweep(wanted.size());
+      means.emplace(sums.means());
+    });
   }
-  return {std::move(*means), time_of(source, wanted), material};
+  return {std::move(sums), std::move(*means), time_of(source, wanted), material};
 }
 
 }  // namespace grainvdb

@@ -16,7 +16,8 @@
 namespace grainvdb {
 
 struct WindowMoments {
-  MomentMeans means;
+  MomentSums sums;
+  MomentMeans means;  ///< a view of the sums
   OutputTime time;
   std::size_t material = 0;  ///< particles that select kept, summed over frames and sweeps
 };

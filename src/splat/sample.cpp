@@ -22,21 +22,21 @@ struct Terms {
 // Looks up single voxels, remembering the leaf of the last one.
 class Reader {
  public:
-  explicit Reader(const LeafBuffers& buffers) : buffers_(buffers) {}
+  explicit Reader(const LeafBlocks& blocks) : blocks_(blocks) {}
 
   // The value of a channel at a voxel; zero outside the topology, where nothing was added.
   double value(const Coord& c, int channel) {
     const Coord origin = leaf_origin(c);
     if (!known_ || origin != origin_) {
-      leaf_ = buffers_.topology()->find(origin);
+      leaf_ = blocks_.topology->find(origin);
       origin_ = origin;
       known_ = true;
     }
-    return leaf_ ? buffers_.block(*leaf_, channel)[leaf_offset(c)] : 0;
+    return leaf_ ? blocks_.block(*leaf_, channel)[leaf_offset(c)] : 0;
   }
 
  private:
-  const LeafBuffers& buffers_;
+  const LeafBlocks& blocks_;
   bool known_ = false;
   Coord origin_;
   std::optional<std::size_t> leaf_;
@@ -45,7 +45,7 @@ class Reader {
 class VoxelRatio {
  public:
   explicit VoxelRatio(const RatioView& ratio)
-      : ratio_(ratio), numerator_(*ratio.numerator), denominator_(*ratio.denominator) {}
+      : ratio_(ratio), numerator_(ratio.numerator), denominator_(ratio.denominator) {}
 
   Terms operator()(const Coord& c) {
     Terms t;
@@ -64,7 +64,7 @@ class VoxelRatio {
 class Profile {
  public:
   Profile(const RatioView& ratio, std::array<bool, 3> homogeneous) : homogeneous_(homogeneous) {
-    const Topology& topology = *ratio.denominator->topology();
+    const Topology& topology = *ratio.denominator.topology;
     const auto bounds = topology.bounds();
     if (!bounds) return;
     std::size_t size = 1;
@@ -77,16 +77,16 @@ class Profile {
     sums_.resize(size);
     // Leaf after leaf in the order of the topology, so that the sums do not depend on threads.
     for (std::size_t l = 0; l < topology.leaf_count(); ++l) {
-      const double* value = ratio.denominator->block(l, ratio.channel);
+      const double* value = ratio.denominator.block(l, ratio.channel);
       topology.mask(l).for_each(
           [&](int offset) { at(voxel_at(topology.origin(l), offset))->denominator += value[offset]; });
     }
-    const Topology& upper = *ratio.numerator->topology();
+    const Topology& upper = *ratio.numerator.topology;
     for (std::size_t l = 0; l < upper.leaf_count(); ++l)
       upper.mask(l).for_each([&](int offset) {
         Terms* sum = at(voxel_at(upper.origin(l), offset));
         if (sum == nullptr) return;
-        for (int a = 0; a < 3; ++a) sum->numerator[a] += ratio.numerator->block(l, ratio.first + a)[offset];
+        for (int a = 0; a < 3; ++a) sum->numerator[a] += ratio.numerator.block(l, ratio.first + a)[offset];
       });
   }
 

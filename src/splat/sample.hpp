@@ -9,12 +9,12 @@
 
 namespace grainvdb {
 
-/// A vector ratio on leaf buffers: channels first … first+2 of `numerator` over one channel of `denominator`. Both may
-/// be the same buffers; their topologies may differ.
+/// A vector ratio on leaves: channels first … first+2 of `numerator` over one channel of `denominator`. Their topologies
+/// may differ.
 struct RatioView {
-  const LeafBuffers* numerator = nullptr;
+  LeafBlocks numerator;
   int first = 0;
-  const LeafBuffers* denominator = nullptr;
+  LeafBlocks denominator;
   int channel = 0;
 };
 

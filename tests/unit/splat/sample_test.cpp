@@ -40,6 +40,11 @@ double noise(const Coord& v, int channel) {
   return 0.1 + 0.8 * static_cast<double>(hash >> 11) / 9007199254740992.0;  // 2⁵³
 }
 
+double value_in(const LeafBlocks& blocks, const Coord& c, int channel) {
+  const auto leaf = blocks.topology->find(leaf_origin(c));
+  return leaf ? blocks.block(*leaf, channel)[leaf_offset(c)] : 0;
+}
+
 // The interpolation written out with a dense map of the sums over the homogeneous axes.
 class DenseSample {
  public:
@@ -47,8 +52,8 @@ class DenseSample {
       : lattice_(scene.lattice()), homogeneous_(homogeneous) {
     for (const Coord& v : scene.voxels(0)) {
       auto& s = sums_[{homogeneous[0] ? 0 : v.x, homogeneous[1] ? 0 : v.y, homogeneous[2] ? 0 : v.z}];
-      for (std::size_t a = 0; a < 3; ++a) s[a] += value_at(*ratio.numerator, v, ratio.first + static_cast<int>(a));
-      s[3] += value_at(*ratio.denominator, v, ratio.channel);
+      for (std::size_t a = 0; a < 3; ++a) s[a] += value_in(ratio.numerator, v, ratio.first + static_cast<int>(a));
+      s[3] += value_in(ratio.denominator, v, ratio.channel);
     }
   }
 
@@ -97,7 +102,7 @@ class Sample : public testing::TestWithParam<Scene> {
   Lattice lattice = scene.lattice();
   LeafBuffers numerator = buffers_of(scene.voxels(0), 5, noise);
   LeafBuffers denominator = buffers_of(scene.voxels(0), 2, [](const Coord& v, int c) { return noise(v, 10 + c); });
-  RatioView ratio{&numerator, 2, &denominator, 1};
+  RatioView ratio{numerator.blocks(), 2, denominator.blocks(), 1};
 };
 
 TEST_P(Sample, TrilinearEqualsTheBruteForce) {
@@ -135,7 +140,7 @@ TEST_P(Sample, SplattedUniformVelocityComesBackAtEveryParticle) {
   const LucyKernel kernel(scene.cutoff);
   const Buckets b = bin_points(lattice, x, scene.cutoff);
   const LeafBuffers sums = splat_particles(lattice, kernel, b, particle_topology(lattice, kernel, b), q, 4);
-  const RatioView velocity{&sums, 1, &sums, 0};
+  const RatioView velocity{sums.blocks(), 1, sums.blocks(), 0};
   for (const Vec3& sample : sample_trilinear(lattice, velocity, x))
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(sample[a], u[a], 1e-13 * std::abs(u[a]));
   for (const auto& homogeneous : {std::array{true, true, false}, std::array{true, true, true}})
@@ -154,7 +159,7 @@ TEST(SampleLinear, LinearFieldsAreReproduced) {
     return c == 3 ? weight(v) : weight(v) * linear(lattice.centre(v), c);
   });
   const Columns3 x = scene.random_positions(200, 34);
-  const auto samples = sample_trilinear(lattice, {&b, 0, &b, 3}, x);
+  const auto samples = sample_trilinear(lattice, {b.blocks(), 0, b.blocks(), 3}, x);
   for (std::size_t p = 0; p < samples.size(); ++p)
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(samples[p][static_cast<std::size_t>(c)], linear(row(x, p), c), 1e-12);
 }
@@ -166,7 +171,7 @@ TEST(SampleLinear, ProfileOfAFieldThatIsLinearInOneDirection) {
     return noise(v, 0) * (c == 3 ? 1 : 2 - 0.7 * (c + 1) * lattice.centre(2, v.z));
   });
   const Columns3 x = scene.random_positions(200, 35);
-  const auto samples = sample_profile(lattice, {&b, 0, &b, 3}, x, {true, true, false});
+  const auto samples = sample_profile(lattice, {b.blocks(), 0, b.blocks(), 3}, x, {true, true, false});
   for (std::size_t p = 0; p < samples.size(); ++p)
     for (std::size_t c = 0; c < 3; ++c)
       EXPECT_NEAR(samples[p][c], 2 - 0.7 * (static_cast<double>(c) + 1) * x[2][p], 1e-12);
@@ -175,7 +180,7 @@ TEST(SampleLinear, ProfileOfAFieldThatIsLinearInOneDirection) {
 TEST(SampleEdges, OnAVoxelCentreOnlyThatVoxelIsNeeded) {
   const Lattice lattice(0.5, {0, 0, 0});
   const LeafBuffers b = buffers_of({{-1, 2, 3}}, 4, [](const Coord&, int c) { return c + 1.0; });
-  const auto samples = sample_trilinear(lattice, {&b, 1, &b, 0}, {{{-0.25}, {1.25}, {1.75}}});
+  const auto samples = sample_trilinear(lattice, {b.blocks(), 1, b.blocks(), 0}, {{{-0.25}, {1.25}, {1.75}}});
   EXPECT_EQ(samples[0], (Vec3{2, 3, 4}));
 }
 
@@ -183,9 +188,9 @@ TEST(SampleEdges, NumeratorMayCoverLessThanTheDenominator) {
   const Lattice lattice(1, {0, 0, 0});
   const LeafBuffers upper = buffers_of({{0, 0, 0}}, 3, [](const Coord&, int) { return 4.0; });
   const LeafBuffers lower = buffers_of({{0, 0, 0}, {-1, 0, 0}}, 1, [](const Coord&, int) { return 2.0; });
-  const auto samples = sample_trilinear(lattice, {&upper, 0, &lower, 0}, {{{0.25}, {0.5}, {0.5}}});
+  const auto samples = sample_trilinear(lattice, {upper.blocks(), 0, lower.blocks(), 0}, {{{0.25}, {0.5}, {0.5}}});
   EXPECT_EQ(samples[0], (Vec3{1.5, 1.5, 1.5}));  // ¾ of 4/2, ¼ of 0/2
-  const auto profile = sample_profile(lattice, {&upper, 0, &lower, 0}, {{{9}, {0.5}, {0.5}}}, {true, false, false});
+  const auto profile = sample_profile(lattice, {upper.blocks(), 0, lower.blocks(), 0}, {{{9}, {0.5}, {0.5}}}, {true, false, false});
   EXPECT_EQ(profile[0], (Vec3{1, 1, 1}));
 }
 
@@ -193,32 +198,32 @@ TEST(SampleEdges, NumeratorMayCoverMoreThanTheDenominator) {
   const Lattice lattice(1, {0, 0, 0});
   const LeafBuffers upper = buffers_of({{0, 0, 0}, {0, 0, 9}}, 3, [](const Coord&, int) { return 4.0; });
   const LeafBuffers lower = buffers_of({{0, 0, 0}}, 1, [](const Coord&, int) { return 2.0; });
-  const auto profile = sample_profile(lattice, {&upper, 0, &lower, 0}, {{{0.5}, {0.5}, {0.5}}}, {true, true, false});
+  const auto profile = sample_profile(lattice, {upper.blocks(), 0, lower.blocks(), 0}, {{{0.5}, {0.5}, {0.5}}}, {true, true, false});
   EXPECT_EQ(profile[0], (Vec3{2, 2, 2}));
 }
 
 TEST(SampleEdges, RefusesPositionsBesideUnreachedVoxels) {
   const Lattice lattice(1, {0, 0, 0});
   const LeafBuffers b = buffers_of({{0, 0, 0}}, 4, [](const Coord&, int) { return 1.0; });
-  const RatioView ratio{&b, 1, &b, 0};
+  const RatioView ratio{b.blocks(), 1, b.blocks(), 0};
   const Columns3 beside{{{0.75}, {0.5}, {0.5}}};
   EXPECT_THROW(sample_trilinear(lattice, ratio, beside), std::logic_error);
   EXPECT_THROW(sample_profile(lattice, ratio, beside, {false, true, true}), std::logic_error);
   EXPECT_NO_THROW(sample_profile(lattice, ratio, beside, {true, true, true}));
   const LeafBuffers empty(std::make_shared<const Topology>(), 4);
-  EXPECT_THROW(sample_profile(lattice, {&empty, 1, &empty, 0}, beside, {true, true, true}), std::logic_error);
+  EXPECT_THROW(sample_profile(lattice, {empty.blocks(), 1, empty.blocks(), 0}, beside, {true, true, true}), std::logic_error);
 }
 
 TEST(SampleEdges, RefusesPositionsThatAreNotFinite) {
   const Lattice lattice(1, {0, 0, 0});
   const LeafBuffers b = buffers_of({{0, 0, 0}}, 4, [](const Coord&, int) { return 1.0; });
   for (double x : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e18})
-    EXPECT_THROW(sample_trilinear(lattice, {&b, 1, &b, 0}, {{{x}, {0.5}, {0.5}}}), std::invalid_argument);
+    EXPECT_THROW(sample_trilinear(lattice, {b.blocks(), 1, b.blocks(), 0}, {{{x}, {0.5}, {0.5}}}), std::invalid_argument);
 }
 
 TEST(SampleEdges, NoPositionsGiveNoSamples) {
   const LeafBuffers b(std::make_shared<const Topology>(), 4);
-  EXPECT_TRUE(sample_trilinear(Lattice(1, {0, 0, 0}), {&b, 1, &b, 0}, {}).empty());
+  EXPECT_TRUE(sample_trilinear(Lattice(1, {0, 0, 0}), {b.blocks(), 1, b.blocks(), 0}, {}).empty());
 }
 
 }  // namespace
