@@ -9,6 +9,7 @@
 
 #include "grainvdb/error.hpp"
 #include "read/columns.hpp"
+#include "read/huge_pages.hpp"
 #include "read/row_order.hpp"
 
 namespace grainvdb {
@@ -202,7 +203,10 @@ Particles make_particles(const ParticleLayout& layout, Table table, const FrameH
       particles.mass[i] *= 4.0 / 3.0 * std::numbers::pi * radius[i] * radius[i] * radius[i];
   }
   if (layout.wanted.has(Column::radius)) particles.radius = std::move(radius);
-  if (layout.type) particles.type.assign(table.whole[*layout.type].begin(), table.whole[*layout.type].end());
+  if (layout.type) {
+    reserve_pages(particles.type, n);
+    particles.type.assign(table.whole[*layout.type].begin(), table.whole[*layout.type].end());
+  }
   return particles;
 }
 

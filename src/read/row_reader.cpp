@@ -17,8 +17,9 @@ constexpr const char* cut_off_hint = "The file was cut off, or is still being wr
 constexpr std::size_t piece_size = std::size_t{1} << 17;
 /// What is in memory as text at once, for each thread and at most.
 constexpr std::size_t batch_per_thread = std::size_t{1} << 20, largest_batch = std::size_t{1} << 24;
-/// How far the memory of a table may be reserved beyond the rows that were met. It is touched only when it is used.
-constexpr std::size_t foresight = 8;
+/// For how many times the rows that were met there may be room in a table. Address space only: memory is taken when it
+/// is written. A first piece of 16 kB then makes room for a million rows.
+constexpr std::size_t foresight = 8192;
 
 /// The first `count` lines, all of which are there.
 std::string_view first_lines(std::string_view text, std::size_t count) {
@@ -41,10 +42,7 @@ std::vector<std::string_view> pieces_of(std::string_view text) {
 template <class T>
 void append_column(std::vector<T>& column, std::size_t room, const std::vector<RowBlock>& blocks, std::size_t count,
                    std::vector<std::vector<T>> RowBlock::*columns, std::size_t index) {
-  if (column.capacity() < room) {
-    column.reserve(room);
-    advise_huge_pages(column);
-  }
+  if (column.capacity() < room) reserve_pages(column, room);
   for (std::size_t k = 0; k < count; ++k) {
     const T* const values = (blocks[k].*columns)[index].data();
     column.insert(column.end(), values, values + blocks[k].rows);
