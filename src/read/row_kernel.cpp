@@ -78,23 +78,23 @@ HWY_NOINLINE std::uint64_t tabs_and_returns(const char* text) {
 }
 
 HWY_INLINE Block classify(const char* text) {
-  const TextVec space = hn::Set(text_tag, ' '), last_control = hn::Set(text_tag, ' ' - 1),
+  const TextVec space = hn::Set(text_tag, ' '), above_space = hn::Set(text_tag, ' ' + 1),
                 newline = hn::Set(text_tag, '\n');
   Block block;
   constexpr std::size_t n = hn::MaxLanes(text_tag);
   for (std::size_t i = 0; i < 64; i += n) {
     const TextVec c = hn::LoadU(text_tag, reinterpret_cast<const std::uint8_t*>(text + i));
-    block.blank |= bits_of(hn::Eq(hn::Min(c, space), c)) << i;
+    block.blank |= bits_of(hn::Lt(c, above_space)) << i;
     block.newline |= bits_of(hn::Eq(c, newline)) << i;
-    block.control |= bits_of(hn::Eq(hn::Min(c, last_control), c)) << i;
+    block.control |= bits_of(hn::Lt(c, space)) << i;
   }
   block.control ^= block.newline;
   if (HWY_UNLIKELY(block.control != 0)) block.control &= ~tabs_and_returns(text);
   return block;
 }
 
-// One number per 64-bit lane. Its characters fill two vectors: `lo` has the character before the token and the first
-// seven of it, `hi` the next eight; the first is the lowest byte.
+// One number per 64-bit lane. Its characters fill two vectors: `lo` has its sign, or what stands before it, in the
+// lowest byte and then seven characters, `hi` has the next eight.
 using D = hn::CappedTag<std::uint64_t, 8>;
 using DBytes = hn::Repartition<std::uint8_t, D>;
 using D16 = hn::Repartition<std::uint16_t, D>;
@@ -124,33 +124,30 @@ HWY_INLINE V every_byte(std::uint8_t value) {
 HWY_INLINE V bytes_equal(V a, std::uint8_t value) {
   return hn::BitCast(d, hn::VecFromMask(d8, hn::Eq(hn::BitCast(d8, a), hn::Set(d8, value))));
 }
-HWY_INLINE V bytes_at_most(V a, std::uint8_t value) {
-  const auto bytes = hn::BitCast(d8, a);
-  return hn::BitCast(d, hn::VecFromMask(d8, hn::Eq(hn::Min(bytes, hn::Set(d8, value)), bytes)));
+HWY_INLINE V bytes_below(V a, std::uint8_t value) {
+  return hn::BitCast(d, hn::VecFromMask(d8, hn::Lt(hn::BitCast(d8, a), hn::Set(d8, value))));
 }
-HWY_INLINE V where_zero(V a) {
-  return hn::VecFromMask(d, hn::Eq(a, hn::Zero(d)));
+HWY_INLINE hn::Mask<D> is_zero(V a) {
+  return hn::Eq(a, hn::Zero(d));
 }
 
-/// The ones below the lowest one, which all bytes of `marks` (0 or 0xff) of 128 bits share.
+/// The bits below the lowest one in 128 bits, whose bytes are 0 or 0xff.
 HWY_INLINE Pair below_first(V lo, V hi) {
   const V one = set(1);
-  return {hn::AndNot(lo, hn::Sub(lo, one)), hn::And(where_zero(lo), hn::AndNot(hi, hn::Sub(hi, one)))};
+  return {hn::AndNot(lo, hn::Sub(lo, one)), hn::IfThenElseZero(is_zero(lo), hn::AndNot(hi, hn::Sub(hi, one)))};
 }
 
 /// How many bytes of a pair are 0xff.
 HWY_INLINE V count_bytes(Pair marks) {
-  const V zero = hn::Zero(d);
-  const auto lo = hn::SumsOf8(hn::Sub(hn::BitCast(d8, zero), hn::BitCast(d8, marks.lo)));
-  const auto hi = hn::SumsOf8(hn::Sub(hn::BitCast(d8, zero), hn::BitCast(d8, marks.hi)));
-  return hn::Add(hn::BitCast(d, lo), hn::BitCast(d, hi));
+  const auto minus_lo = hn::Sub(hn::Zero(d8), hn::BitCast(d8, marks.lo));
+  return hn::BitCast(d, hn::SumsOf8(hn::Sub(minus_lo, hn::BitCast(d8, marks.hi))));
 }
 
-/// Eight digits, the first the most significant, as a number.
+/// Eight digits, the first the most significant, as a number. A product puts 10 a + b, then 100 a + b, into the upper
+/// half of what a and b share.
 HWY_INLINE V eight_digits(V digits) {
-  const auto two = hn::ShiftRight<8>(hn::Mul(hn::BitCast(d16, digits), hn::Set(d16, 2561)));  // 10 a + b
-  const auto high = hn::Mul(two, hn::BitCast(d16, hn::Set(d32, 100)));
-  const auto four = hn::Add(hn::BitCast(d32, high), hn::ShiftRight<16>(hn::BitCast(d32, two)));
+  const auto two = hn::ShiftRight<8>(hn::Mul(hn::BitCast(d16, digits), hn::Set(d16, 10 * 0x100 + 1)));
+  const auto four = hn::ShiftRight<16>(hn::Mul(hn::BitCast(d32, two), hn::Set(d32, 100 * 0x10000 + 1)));
   return hn::Add(hn::MulEven(four, hn::Set(d32, 10000)), hn::ShiftRight<32>(hn::BitCast(d, four)));
 }
 
@@ -167,7 +164,8 @@ HWY_INLINE Pair load(const char* text, const std::uint32_t* starts, std::size_t 
   constexpr hn::FixedTag<std::uint64_t, 2> two;
   const auto both = [&](std::size_t i) HWY_ATTR {
     const auto at = [&](std::size_t k) HWY_ATTR {
-      const char* from = text + starts[k * stride] - 1;
+      const char* const token = text + starts[k * stride];
+      const char* const from = token - (*token < '.' ? 0 : 1);
       return hn::BitCast(two, hn::LoadU(sixteen, reinterpret_cast<const std::uint8_t*>(from)));
     };
     const auto a = at(i), b = at(i + 1);
@@ -194,26 +192,24 @@ HWY_INLINE Pair load(const char* text, const std::uint32_t* starts, std::size_t 
 struct Token {
   Pair character;
   V minus;          ///< all ones where the number is negative
-  V ignored;        ///< the bytes of `lo` before the first digit or point: the character before the token and a sign
-  Pair digit;       ///< digits; ignored bytes too
+  Pair digit;       ///< digits; the lowest byte too
   Pair whole_part;  ///< below the first character that is neither
   Pair point;       ///< that character
   Pair inside;      ///< below the first blank
-  V unended;        ///< all ones where there is no blank
+  V wrong;          ///< non-zero where there is no blank, or neither a sign nor a blank at first
 };
 
 HWY_INLINE Token take_apart(Pair character) {
   Token t;
   t.character = character;
-  const V first = hn::And(character.lo, set(0xff00));
-  const auto minus = hn::Eq(first, set(std::uint64_t{'-'} << 8)), plus = hn::Eq(first, set(std::uint64_t{'+'} << 8));
+  const V lowest = set(0xff), first = hn::And(character.lo, lowest);
+  const auto minus = hn::Eq(first, set('-'));
   t.minus = hn::VecFromMask(d, minus);
-  t.ignored = hn::Or(set(0xff), hn::And(hn::Or(t.minus, hn::VecFromMask(d, plus)), set(0xff00)));
 
-  const V zeros = every_byte('0');
-  const auto minus_zero = [&](V c)
-                              HWY_ATTR { return hn::BitCast(d, hn::Sub(hn::BitCast(d8, c), hn::BitCast(d8, zeros))); };
-  t.digit = {hn::Or(bytes_at_most(minus_zero(character.lo), 9), t.ignored), bytes_at_most(minus_zero(character.hi), 9)};
+  const auto digits = [](V c) HWY_ATTR {
+    return bytes_below(hn::BitCast(d, hn::Sub(hn::BitCast(d8, c), hn::Set(d8, '0'))), 10);
+  };
+  t.digit = {hn::Or(digits(character.lo), lowest), digits(character.hi)};
   const V ones = set(~std::uint64_t{0});
   const V other_lo = hn::Xor(t.digit.lo, ones), other_hi = hn::Xor(t.digit.hi, ones);
   t.whole_part = below_first(other_lo, other_hi);
@@ -223,16 +219,18 @@ HWY_INLINE Token take_apart(Pair character) {
     return hn::Sub(hn::ShiftLeft<8>(bit), bit);
   };
   t.point = {byte_above(t.whole_part.lo, other_lo),
-             hn::And(where_zero(other_lo), byte_above(t.whole_part.hi, other_hi))};
+             hn::IfThenElseZero(is_zero(other_lo), byte_above(t.whole_part.hi, other_hi))};
 
-  const V blank_lo = hn::AndNot(set(0xff), bytes_at_most(character.lo, ' ')),
-          blank_hi = bytes_at_most(character.hi, ' ');
+  const V blank_first = bytes_below(character.lo, ' ' + 1), blank_lo = hn::AndNot(lowest, blank_first),
+          blank_hi = bytes_below(character.hi, ' ' + 1);
   t.inside = below_first(blank_lo, blank_hi);
-  t.unended = where_zero(hn::Or(blank_lo, blank_hi));
+  const auto lawful = hn::Or(hn::Or(minus, hn::Eq(first, set('+'))), hn::Eq(hn::And(blank_first, lowest), lowest));
+  const auto unended = is_zero(hn::Or(blank_lo, blank_hi));
+  t.wrong = hn::Or(hn::IfThenZeroElse(lawful, ones), hn::VecFromMask(d, unended));
   return t;
 }
 
-/// The digits of `inside` as a number of sixteen, the first ignored byte on the left and zeros on the right.
+/// The digits of `inside` as a number of sixteen: a zero for the lowest byte, then they, then zeros.
 struct Digits {
   V value;
   V has_point;  ///< non-zero where a point is among them
@@ -244,14 +242,16 @@ HWY_INLINE Digits digits_of(const Token& t, Pair inside) {
   const V other_lo = hn::AndNot(t.digit.lo, inside.lo), other_hi = hn::AndNot(t.digit.hi, inside.hi);
   Digits result;
   result.has_point = hn::Or(other_lo, other_hi);
-  const V no_digit =
-      where_zero(hn::Or(hn::AndNot(t.ignored, hn::And(t.digit.lo, inside.lo)), hn::And(t.digit.hi, inside.hi)));
-  result.wrong = hn::Or(
-      hn::Or(hn::And(hn::Xor(t.character.lo, points), other_lo), hn::And(hn::Xor(t.character.hi, points), other_hi)),
-      hn::Or(hn::Or(hn::AndNot(t.point.lo, other_lo), hn::AndNot(t.point.hi, other_hi)), no_digit));
+  const V lowest = set(0xff);
+  const auto no_digit =
+      is_zero(hn::Or(hn::AndNot(lowest, hn::And(t.digit.lo, inside.lo)), hn::And(t.digit.hi, inside.hi)));
+  const V no_point =
+      hn::Or(hn::And(hn::Xor(t.character.lo, points), other_lo), hn::And(hn::Xor(t.character.hi, points), other_hi));
+  const V second = hn::Or(hn::AndNot(t.point.lo, other_lo), hn::AndNot(t.point.hi, other_hi));
+  result.wrong = hn::Or(hn::Or(no_point, second), hn::VecFromMask(d, no_digit));
 
   // A digit is its character with the bits of '0' taken off. Those behind the point move up by one.
-  const V lo = hn::AndNot(t.ignored, hn::And(hn::AndNot(zeros, t.character.lo), inside.lo)),
+  const V lo = hn::And(hn::AndNot(zeros, t.character.lo), hn::AndNot(lowest, inside.lo)),
           hi = hn::And(hn::AndNot(zeros, t.character.hi), inside.hi);
   const V behind_lo = hn::AndNot(hn::Or(t.whole_part.lo, t.point.lo), lo),
           behind_hi = hn::AndNot(hn::Or(t.whole_part.hi, t.point.hi), hi);
@@ -280,7 +280,8 @@ HWY_INLINE Numbers with_exponents(const Token& t) {
   const Pair before = below_first(e_lo, e_hi);
   const Pair mantissa{hn::And(before.lo, t.inside.lo), hn::And(before.hi, t.inside.hi)};
   const V length = count_bytes(mantissa);
-  V wrong = hn::Or(where_zero(hn::Or(e_lo, e_hi)), hn::Xor(hn::Sub(count_bytes(t.inside), length), set(4)));
+  V wrong =
+      hn::Or(hn::VecFromMask(d, is_zero(hn::Or(e_lo, e_hi))), hn::Xor(hn::Sub(count_bytes(t.inside), length), set(4)));
 
   // The three characters behind the e.
   const V bits = hn::ShiftLeft<3>(hn::Add(length, set(1))), shift = hn::And(bits, set(63));
@@ -330,7 +331,7 @@ struct RealColumn {
     }
     value = hn::Or(value, hn::BitCast(df, hn::And(t.minus, set(std::uint64_t{1} << 63))));
     hn::StoreU(value, df, out);
-    return hn::Eq(hn::Or(wrong, t.unended), hn::Zero(d));
+    return hn::Eq(hn::Or(wrong, t.wrong), hn::Zero(d));
   }
 };
 
@@ -342,7 +343,7 @@ struct WholeColumn {
     const VReal size = hn::Div(to_real(digits.value), power_of_ten(plain_scale(t)));
     const V value = hn::BitCast(d, hn::ConvertTo(di, size));
     hn::StoreU(hn::BitCast(di, hn::Sub(hn::Xor(value, t.minus), t.minus)), di, out);
-    return hn::Eq(hn::Or(hn::Or(digits.wrong, digits.has_point), t.unended), hn::Zero(d));
+    return hn::Eq(hn::Or(hn::Or(digits.wrong, digits.has_point), t.wrong), hn::Zero(d));
   }
 };
 

@@ -1,9 +1,9 @@
 #pragma once
 /// Numbers in rows of text, many at a time: the vector loops behind RowConverter.
 ///
-/// They take what a dump prints nearly always, tokens of at most 15 characters such as 12, -0.00370913 or 6.7897e-07,
-/// and leave every other token to parse_real and parse_whole, with which they agree to the bit. 64 bytes (text_margin)
-/// must be readable before and behind the text.
+/// They take what a dump prints nearly always, tokens of at most 14 characters behind the sign such as 12, -0.00370913
+/// or 6.7897e-07, and leave every other token to parse_real and parse_whole, with which they agree to the bit. 64 bytes
+/// (text_margin) must be readable before and behind the text.
 #include <array>
 #include <cstddef>
 #include <cstdint>
