@@ -127,6 +127,9 @@ HWY_INLINE V bytes_equal(V a, std::uint8_t value) {
 HWY_INLINE V bytes_below(V a, std::uint8_t value) {
   return hn::BitCast(d, hn::VecFromMask(d8, hn::Lt(hn::BitCast(d8, a), hn::Set(d8, value))));
 }
+HWY_INLINE V digit_bytes(V a) {
+  return bytes_below(hn::BitCast(d, hn::Sub(hn::BitCast(d8, a), hn::Set(d8, '0'))), 10);
+}
 HWY_INLINE hn::Mask<D> is_zero(V a) {
   return hn::Eq(a, hn::Zero(d));
 }
@@ -157,6 +160,18 @@ HWY_ALIGN constexpr std::array<double, 23> powers{1e0,  1e1,  1e2,  1e3,  1e4,  
 
 HWY_INLINE VReal power_of_ten(V exponent) {
   return hn::GatherIndex(df, powers.data(), hn::BitCast(di, exponent));
+}
+
+/// The same for exponents below 16.
+HWY_INLINE VReal small_power_of_ten(V exponent) {
+#if HWY_MAX_BYTES == 64
+  const auto index = hn::IndicesFromVec(df, hn::And(exponent, set(7)));
+  const VReal low = hn::TableLookupLanes(hn::Load(df, powers.data()), index),
+              high = hn::TableLookupLanes(hn::Load(df, powers.data() + 8), index);
+  return hn::IfThenElse(hn::RebindMask(df, is_zero(hn::And(exponent, set(8)))), low, high);
+#else
+  return power_of_ten(exponent);
+#endif
 }
 
 HWY_INLINE Pair load(const char* text, const std::uint32_t* starts, std::size_t stride) {
@@ -206,10 +221,7 @@ HWY_INLINE Token take_apart(Pair character) {
   const auto minus = hn::Eq(first, set('-'));
   t.minus = hn::VecFromMask(d, minus);
 
-  const auto digits = [](V c) HWY_ATTR {
-    return bytes_below(hn::BitCast(d, hn::Sub(hn::BitCast(d8, c), hn::Set(d8, '0'))), 10);
-  };
-  t.digit = {hn::Or(digits(character.lo), lowest), digits(character.hi)};
+  t.digit = {hn::Or(digit_bytes(character.lo), lowest), digit_bytes(character.hi)};
   const V ones = set(~std::uint64_t{0});
   const V other_lo = hn::Xor(t.digit.lo, ones), other_hi = hn::Xor(t.digit.hi, ones);
   t.whole_part = below_first(other_lo, other_hi);
@@ -302,7 +314,7 @@ HWY_INLINE Numbers with_exponents(const Token& t) {
   const Digits digits = digits_of(t, mantissa);
   const V one_for_point = hn::IfThenZeroElse(hn::Eq(digits.has_point, hn::Zero(d)), set(1));
   const V zeros = hn::And(hn::Add(hn::Sub(set(16), length), one_for_point), set(15));
-  const VReal whole = hn::Div(to_real(digits.value), power_of_ten(zeros));
+  const VReal whole = hn::Div(to_real(digits.value), small_power_of_ten(zeros));
   const V power = hn::Add(hn::Add(hn::Sub(count_bytes(t.whole_part), set(16)), zeros), exponent);
   const auto down = hn::Lt(hn::BitCast(di, power), hn::Zero(di));
   const V magnitude = hn::IfThenElse(hn::RebindMask(d, down), hn::Sub(hn::Zero(d), power), power);
@@ -321,7 +333,7 @@ struct RealColumn {
   static HWY_INLINE hn::Mask<D> convert(Pair characters, double* out) {
     const Token t = take_apart(characters);
     const Digits digits = digits_of(t, t.inside);
-    VReal value = hn::Div(to_real(digits.value), power_of_ten(plain_scale(t)));
+    VReal value = hn::Div(to_real(digits.value), small_power_of_ten(plain_scale(t)));
     V wrong = digits.wrong;
     if (HWY_UNLIKELY(!hn::AllTrue(d, hn::Eq(wrong, hn::Zero(d))))) {
       const Numbers others = with_exponents(t);
@@ -335,15 +347,42 @@ struct RealColumn {
   }
 };
 
+struct Wholes {
+  V size;
+  V minus;  ///< all ones where negative
+  V wrong;  ///< non-zero where the token is left to others
+};
+
+/// Those of which `blank`, the blanks in the lower half, has one: up to seven characters behind the sign.
+HWY_INLINE Wholes short_wholes(V characters, V blank) {
+  const V lowest = set(0xff), first = hn::And(characters, lowest);
+  const auto minus = hn::Eq(first, set('-'));
+  const V inside = hn::AndNot(blank, hn::Sub(blank, set(1))), places = hn::AndNot(lowest, inside);
+  const V other = hn::AndNot(digit_bytes(characters), places);
+  const auto lawful =
+      hn::Or(hn::Or(minus, hn::Eq(first, set('+'))), hn::Eq(hn::And(bytes_below(characters, ' ' + 1), lowest), lowest));
+  const V none = hn::VecFromMask(d, is_zero(places));
+  const V digits = hn::And(hn::AndNot(every_byte('0'), characters), places);
+  const V length = count_bytes({inside, hn::Zero(d)});
+  return {eight_digits(hn::Shl(digits, hn::Sub(set(64), hn::ShiftLeft<3>(length)))), hn::VecFromMask(d, minus),
+          hn::Or(hn::Or(other, none), hn::IfThenZeroElse(lawful, lowest))};
+}
+
+HWY_INLINE Wholes long_wholes(Pair characters) {
+  const Token t = take_apart(characters);
+  const Digits digits = digits_of(t, t.inside);
+  const VReal size = hn::Div(to_real(digits.value), small_power_of_ten(plain_scale(t)));
+  return {hn::BitCast(d, hn::ConvertTo(di, size)), t.minus, hn::Or(hn::Or(digits.wrong, digits.has_point), t.wrong)};
+}
+
 struct WholeColumn {
   using Value = std::int64_t;
   static HWY_INLINE hn::Mask<D> convert(Pair characters, std::int64_t* out) {
-    const Token t = take_apart(characters);
-    const Digits digits = digits_of(t, t.inside);
-    const VReal size = hn::Div(to_real(digits.value), power_of_ten(plain_scale(t)));
-    const V value = hn::BitCast(d, hn::ConvertTo(di, size));
-    hn::StoreU(hn::BitCast(di, hn::Sub(hn::Xor(value, t.minus), t.minus)), di, out);
-    return hn::Eq(hn::Or(hn::Or(digits.wrong, digits.has_point), t.wrong), hn::Zero(d));
+    const V blank = hn::AndNot(set(0xff), bytes_below(characters.lo, ' ' + 1));
+    const Wholes wholes =
+        HWY_LIKELY(hn::AllFalse(d, is_zero(blank))) ? short_wholes(characters.lo, blank) : long_wholes(characters);
+    hn::StoreU(hn::BitCast(di, hn::Sub(hn::Xor(wholes.size, wholes.minus), wholes.minus)), di, out);
+    return is_zero(wholes.wrong);
   }
 };
 
