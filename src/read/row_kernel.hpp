@@ -25,6 +25,14 @@ struct LineIndex {
 /// Finds tokens and lines in `size` bytes (at most LineIndex::window) that begin at the start of a line.
 void index_lines(const char* text, std::size_t size, LineIndex& index);
 
+struct LineCount {
+  std::size_t lines = 0;
+  std::size_t marked = 0;  ///< those that begin with an I, as "ITEM:" does
+};
+
+/// Counts the lines of a text that begins at the start of a line and ends with a newline.
+LineCount count_lines(const char* text, std::size_t size);
+
 /// Converts one column: values[i] of the token at text + starts[i * stride], for i < rows. Puts the rows whose tokens
 /// it leaves to others into `left`, in ascending order, and returns their number. The text must be plain (see
 /// LineIndex).

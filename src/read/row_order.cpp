@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/parallel.hpp"
+#include "read/huge_pages.hpp"
 
 namespace grainvdb {
 namespace {
@@ -68,10 +69,14 @@ RowOrder placed(const std::vector<std::int64_t>& key, const KeyRange& range) {
 
 template <class T>
 void reorder_columns(std::vector<std::vector<T>>& columns, const std::vector<std::uint32_t>& order) {
-  std::vector<T> moved(columns.empty() ? 0 : order.size());
+  if (columns.empty()) return;
+  std::vector<T> moved;
+  reserve_pages(moved, order.size());
+  moved.resize(order.size());
   for (std::vector<T>& column : columns) {
-    const auto move = [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) moved[i] = column[order[i]];
+    const auto move = [from = column.data(), to = moved.data(), row = order.data()](std::size_t begin,
+                                                                                    std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) to[i] = from[row[i]];
     };
     if (order.size() < worth_threads)
       move(0, order.size());

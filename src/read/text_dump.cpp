@@ -1,13 +1,18 @@
 #include "read/text_dump.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "grainvdb/error.hpp"
+#include "read/row_kernel.hpp"
 #include "read/row_reader.hpp"
 #include "read/text.hpp"
 #include "read/text_header.hpp"
 
 namespace grainvdb {
+namespace {
+constexpr std::size_t longest_piece = std::size_t{1} << 14;
+}
 
 bool TextDump::recognise(std::string_view head) {
   return head.starts_with(item_mark);
@@ -50,15 +55,33 @@ void TextDump::check_end_of_rows() {
 }
 
 bool TextDump::skip_rows() {
+  std::size_t left = header_.rows;
+  while (left > 0) {
+    // Small pieces, as the one in which the frame ends is counted in vain.
+    std::string_view piece = lines_.lines();
+    if (piece.size() > longest_piece) piece = piece.substr(0, piece.rfind('\n', longest_piece) + 1);
+    const LineCount count = count_lines(piece.data(), piece.size());
+    if (count.lines > 0 && count.lines <= left && count.marked == 0) {
+      lines_.pass(piece.size(), count.lines);
+      left -= count.lines;
+    } else if (!skip_one_by_one(std::clamp<std::size_t>(count.lines, 1, left), left)) {
+      return false;
+    }
+  }
+  check_end_of_rows();
+  return true;
+}
+
+/// Passes over `count` rows, and takes them off `left`; false when the file or the next frame comes before.
+bool TextDump::skip_one_by_one(std::size_t count, std::size_t& left) {
   std::string_view line;
-  for (std::size_t row = 0; row < header_.rows; ++row) {
+  for (; count > 0; --count, --left) {
     if (!lines_.next(line)) return false;
     if (line.starts_with(item_mark)) {
       lines_.unread();
       return false;
     }
   }
-  check_end_of_rows();
   return true;
 }
 

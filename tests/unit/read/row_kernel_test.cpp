@@ -272,6 +272,26 @@ TEST_P(RowKernel, FindsTokensAndLinesLikeALoop) {
     ASSERT_EQ(std::vector(index.newlines.begin(), index.newlines.begin() + static_cast<std::ptrdiff_t>(index.lines)),
               newlines);
     EXPECT_GT(index.starts[index.tokens], text.size());
+    EXPECT_EQ(count_lines(all.data() + margin, text.size()).lines, newlines.size());
+  }
+}
+
+TEST_P(RowKernel, CountsLinesAndThoseThatMayBeginASection) {
+  Random random(7);
+  for (int trial = 0; trial < 500; ++trial) {
+    std::string text;
+    std::size_t lines = random.below(200), marked = 0;
+    for (std::size_t i = 0; i < lines; ++i) {
+      const bool mark = random.below(10) == 0;
+      marked += mark ? 1 : 0;
+      text += mark ? 'I' : 'x';
+      text.append(random.below(70), 'I');
+      text += '\n';
+    }
+    const std::string all = padded(text);
+    const LineCount count = count_lines(all.data() + margin, text.size());
+    ASSERT_EQ(count.lines, lines);
+    ASSERT_EQ(count.marked, marked);
   }
 }
 

@@ -132,6 +132,30 @@ TEST_F(RowReaderTest, StopsWhereTheFrameEnds) {
   }
 }
 
+TEST_F(RowReaderTest, SkipsRowsUpToTheEndOfTheFrame) {
+  auto rows = random_rows(20'000, 9);
+  for (std::size_t i = 0; i < rows.size(); i += 1000) rows[i].insert(0, "Indium ");  // as if a section began
+  const std::string two = particle_dump(1, columns, rows) + particle_dump(2, columns, {"1 0 0 0 0 1"});
+  const auto skips = [&](const std::string& text) {
+    const std::string path = files_.write("dump", text);
+    auto dump = std::make_unique<TextDump>(LineReader(open_bytes(path, counter_).bytes, path));
+    EXPECT_TRUE(dump->next_header());
+    return std::pair(dump->skip_rows(), std::move(dump));
+  };
+  auto [skipped, dump] = skips(two);
+  EXPECT_TRUE(skipped);
+  EXPECT_EQ(dump->next_header()->step, 2);
+  EXPECT_TRUE(dump->skip_rows());
+  EXPECT_TRUE(dump->at_end());
+
+  std::string text = two;
+  text.replace(text.find("20000"), 5, "20001");
+  EXPECT_FALSE(skips(text).first);
+  text.replace(text.find("20001"), 5, "19999");
+  expect_error<InputError>([&] { skips(text); }, {"there is text after the last row"});
+  EXPECT_FALSE(skips(two.substr(0, two.size() / 2)).first);
+}
+
 TEST_F(RowReaderTest, RefusesTheFirstBadLineWhateverTheNumberOfThreads) {
   const auto good = random_rows(60'000, 4);
   const std::vector<std::pair<std::string, std::string>> bad{{"1 2 3 x 5 6", "bad value in column z"},
