@@ -1,9 +1,12 @@
 #pragma once
 /// Loops that run in parallel. What they compute must not depend on the order of the calls.
+#include <algorithm>
 #include <cstddef>
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
@@ -36,6 +39,12 @@ class LoopFence {
   void leave() {}
 #endif
 };
+
+/// How many threads a loop may use here. Results must not depend on it.
+inline std::size_t thread_count() {
+  return std::min(static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()),
+                  tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
 
 /// Calls f(begin, end) for ranges that make up [0, n), in parallel.
 template <class F>

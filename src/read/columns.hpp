@@ -47,14 +47,6 @@ class ColumnFinder {
 /// Where a key of the input stands in the pipeline file, or the nearest section above it that is known.
 Location stated_at(const InputSpec& spec, std::string key);
 
-/// The elements of `values` in the given order.
-template <class T>
-std::vector<T> gathered(const std::vector<T>& values, const std::vector<std::size_t>& order) {
-  std::vector<T> result(values.size());
-  for (std::size_t i = 0; i < order.size(); ++i) result[i] = values[order[i]];
-  return result;
-}
-
 /// Ids must be positive and, as some codes keep them as doubles, below 2^53. Throws InputError for the first that is
 /// not.
 void check_ids(const std::vector<std::int64_t>& ids, std::string_view column, std::size_t first_line,

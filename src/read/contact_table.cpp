@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
-#include <numeric>
 #include <string_view>
 #include <utility>
 
 #include "grainvdb/error.hpp"
 #include "read/columns.hpp"
+#include "read/row_order.hpp"
 
 namespace grainvdb {
 namespace {
@@ -168,34 +168,34 @@ ContactNames plain_names(const ColumnFinder& finder) {
   return names;
 }
 
-/// The duplicates of unordered pairs, found by sorting. Throws InputError for the first.
-void check_pairs(const std::vector<std::int64_t>& id1, const std::vector<std::int64_t>& id2, std::size_t first_line,
-                 const std::string& file) {
-  struct Pair {
-    std::int64_t low, high;
-    std::size_t row;
-    auto operator<=>(const Pair&) const = default;
-  };
-  std::vector<Pair> pairs(id1.size());
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
+/// The order of ascending (id1, id2). Throws InputError for the first contact of a particle with itself, or else the
+/// least pair that comes twice, in whichever order of its ids.
+RowOrder order_of_pairs(const std::vector<std::int64_t>& id1, const std::vector<std::int64_t>& id2,
+                        std::size_t first_line, const std::string& file) {
+  std::vector<std::int64_t> low(id1.size()), high(id1.size());
+  for (std::size_t i = 0; i < id1.size(); ++i) {
     if (id1[i] == id2[i])
       throw InputError({{file, first_line + i},
                         "a contact of a particle with itself",
                         "id " + std::to_string(id1[i]) + " twice",
                         "two different ids",
                         {}});
-    pairs[i] = {std::min(id1[i], id2[i]), std::max(id1[i], id2[i]), i};
+    low[i] = std::min(id1[i], id2[i]);
+    high[i] = std::max(id1[i], id2[i]);
   }
-  std::sort(pairs.begin(), pairs.end());
-  const auto twice = std::adjacent_find(
-      pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.low == b.low && a.high == b.high; });
-  if (twice == pairs.end()) return;
-  throw InputError({{file, first_line + (twice + 1)->row},
-                    "the contact of particles " + std::to_string(twice->low) + " and " + std::to_string(twice->high) +
-                        " comes twice in one frame",
-                    "it also on line " + std::to_string(first_line + twice->row),
-                    "each pair once",
-                    {}});
+  RowOrder order = ascending(low, high);
+  const auto row = [&](std::size_t i) { return order ? (*order)[i] : i; };
+  for (std::size_t i = 1; i < low.size(); ++i) {
+    const std::size_t a = row(i - 1), b = row(i);
+    if (low[a] == low[b] && high[a] == high[b])
+      throw InputError({{file, first_line + b},
+                        "the contact of particles " + std::to_string(low[b]) + " and " + std::to_string(high[b]) +
+                            " comes twice in one frame",
+                        "it also on line " + std::to_string(first_line + a),
+                        "each pair once",
+                        {}});
+  }
+  return low == id1 ? order : ascending(id1, id2);
 }
 
 }  // namespace
@@ -291,26 +291,21 @@ ContactLayout contact_layout(const FrameHeader& header, const std::string& file,
   return layout;
 }
 
-Contacts make_contacts(const ContactLayout& layout, const Table& table, const FrameHeader& header,
-                       const std::string& file) {
-  const std::vector<std::int64_t>&id1 = table.whole[layout.id1], &id2 = table.whole[layout.id2];
+Contacts make_contacts(const ContactLayout& layout, Table table, const FrameHeader& header, const std::string& file) {
+  std::vector<std::int64_t>&id1 = table.whole[layout.id1], &id2 = table.whole[layout.id2];
   check_ids(id1, header.columns[layout.request.whole[layout.id1]], table.first_line, file);
   check_ids(id2, header.columns[layout.request.whole[layout.id2]], table.first_line, file);
-  check_pairs(id1, id2, table.first_line, file);
+  reorder(table, order_of_pairs(id1, id2, table.first_line, file));
 
-  std::vector<std::size_t> order(table.rows);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return id1[a] != id1[b] ? id1[a] < id1[b] : id2[a] < id2[b]; });
   Contacts contacts;
-  contacts.id1 = gathered(id1, order);
-  contacts.id2 = gathered(id2, order);
   for (std::size_t a = 0; a < 3; ++a) {
     contacts.force[a].assign(table.rows, 0.0);
     for (const auto& force : layout.forces)
-      for (std::size_t i = 0; i < table.rows; ++i) contacts.force[a][i] += table.real[force[a]][order[i]];
-    if (layout.point) contacts.point[a] = gathered(table.real[(*layout.point)[a]], order);
+      for (std::size_t i = 0; i < table.rows; ++i) contacts.force[a][i] += table.real[force[a]][i];
+    if (layout.point) contacts.point[a] = table.real[(*layout.point)[a]];
   }
+  contacts.id1 = std::move(id1);
+  contacts.id2 = std::move(id2);
   return contacts;
 }
 

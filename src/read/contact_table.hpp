@@ -28,7 +28,6 @@ void check_contact_spec(const InputSpec& spec);
 ContactLayout contact_layout(const FrameHeader& header, const std::string& file, const InputSpec& spec);
 
 /// Checks and converts a table: two different ids per row, each pair once, rows in ascending order of (id1, id2).
-Contacts make_contacts(const ContactLayout& layout, const Table& table, const FrameHeader& header,
-                       const std::string& file);
+Contacts make_contacts(const ContactLayout& layout, Table table, const FrameHeader& header, const std::string& file);
 
 }  // namespace grainvdb

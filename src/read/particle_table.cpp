@@ -4,11 +4,13 @@
 #include <charconv>
 #include <limits>
 #include <numbers>
-#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "grainvdb/error.hpp"
 #include "read/columns.hpp"
+#include "read/huge_pages.hpp"
+#include "read/row_order.hpp"
 
 namespace grainvdb {
 namespace {
@@ -106,22 +108,30 @@ void check_positive(const std::vector<double>& values, const std::string& column
   throw InputError({{file, first_line + row}, "bad value in column " + column, shown(*bad), "a number above 0", {}});
 }
 
-/// The order of ascending ids. Throws InputError for an id that comes twice.
-std::vector<std::size_t> order_by_id(const std::vector<std::int64_t>& id, std::size_t first_line,
-                                     const std::string& file) {
-  std::vector<std::size_t> order(id.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto less = [&](std::size_t a, std::size_t b) { return id[a] != id[b] ? id[a] < id[b] : a < b; };
-  if (!std::is_sorted(order.begin(), order.end(), less)) std::sort(order.begin(), order.end(), less);
-  const auto twice =
-      std::adjacent_find(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return id[a] == id[b]; });
-  if (twice != order.end())
-    throw InputError({{file, first_line + *(twice + 1)},
-                      "the particle id " + std::to_string(id[*twice]) + " comes twice in one frame",
-                      "it also on line " + std::to_string(first_line + *twice),
+/// Throws InputError for the least id that comes twice.
+void check_unique(const std::vector<std::int64_t>& id, const RowOrder& order, std::size_t first_line,
+                  const std::string& file) {
+  const auto row = [&](std::size_t i) { return order ? (*order)[i] : i; };
+  for (std::size_t i = 1; i < id.size(); ++i) {
+    if (id[row(i)] != id[row(i - 1)]) continue;
+    throw InputError({{file, first_line + row(i)},
+                      "the particle id " + std::to_string(id[row(i)]) + " comes twice in one frame",
+                      "it also on line " + std::to_string(first_line + row(i - 1)),
                       "each id once",
                       {}});
-  return order;
+  }
+}
+
+void check_types(const std::vector<std::int64_t>& type, std::size_t first_line, const std::string& file) {
+  const auto bad = std::find_if(type.begin(), type.end(), [](std::int64_t t) {
+    return t < std::numeric_limits<int>::min() || t > std::numeric_limits<int>::max();
+  });
+  if (bad == type.end()) return;
+  throw InputError({{file, first_line + static_cast<std::size_t>(bad - type.begin())},
+                    "bad value in column type",
+                    std::to_string(*bad),
+                    "a particle type",
+                    {}});
 }
 
 }  // namespace
@@ -153,62 +163,49 @@ ParticleLayout particle_layout(const FrameHeader& header, const std::string& fil
   return layout;
 }
 
-Particles make_particles(const ParticleLayout& layout, const Table& table, const FrameHeader& header,
+Particles make_particles(const ParticleLayout& layout, Table table, const FrameHeader& header,
                          const std::string& file) {
-  const auto column_name = [&](std::size_t real) -> const std::string& {
-    return header.columns[layout.request.real[real]];
-  };
   const std::size_t n = table.rows;
-  const std::vector<std::int64_t>& id = table.whole[layout.id];
-  check_ids(id, "id", table.first_line, file);
-  const std::vector<std::size_t> order = order_by_id(id, table.first_line, file);
+  check_ids(table.whole[layout.id], "id", table.first_line, file);
+  const RowOrder order = ascending(table.whole[layout.id]);
+  check_unique(table.whole[layout.id], order, table.first_line, file);
+  for (const std::optional<std::size_t>& column : {layout.radius, layout.mass, layout.density})
+    if (column)
+      check_positive(table.real[*column], header.columns[layout.request.real[*column]], table.first_line, file);
+  if (layout.type) check_types(table.whole[*layout.type], table.first_line, file);
+  reorder(table, order);
 
   Particles particles;
-  particles.id = gathered(id, order);
-  const auto gather3 = [&](const std::array<std::size_t, 3>& from, Columns3& to) {
-    for (std::size_t a = 0; a < 3; ++a) to[a] = gathered(table.real[from[a]], order);
+  particles.id = std::move(table.whole[layout.id]);
+  const auto take3 = [&](const std::array<std::size_t, 3>& from, Columns3& to) {
+    for (std::size_t a = 0; a < 3; ++a) to[a] = std::move(table.real[from[a]]);
   };
-  gather3(layout.position, particles.position);
+  take3(layout.position, particles.position);
   if (layout.scaled)
     for (std::size_t a = 0; a < 3; ++a)
       for (double& x : particles.position[a]) x = header.box.lo[a] + x * (header.box.hi[a] - header.box.lo[a]);
-  if (layout.velocity) gather3(*layout.velocity, particles.velocity);
-  if (layout.angular_velocity) gather3(*layout.angular_velocity, particles.angular_velocity);
+  if (layout.velocity) take3(*layout.velocity, particles.velocity);
+  if (layout.angular_velocity) take3(*layout.angular_velocity, particles.angular_velocity);
 
   std::vector<double> radius;
   if (layout.radius) {
-    check_positive(table.real[*layout.radius], column_name(*layout.radius), table.first_line, file);
-    radius = gathered(table.real[*layout.radius], order);
+    radius = std::move(table.real[*layout.radius]);
     for (double& r : radius) r *= layout.radius_factor;
   } else if (layout.common_radius > 0) {
     radius.assign(n, layout.common_radius);
   }
   if (layout.mass) {
-    check_positive(table.real[*layout.mass], column_name(*layout.mass), table.first_line, file);
-    particles.mass = gathered(table.real[*layout.mass], order);
+    particles.mass = std::move(table.real[*layout.mass]);
   } else if (layout.wanted.has(Column::mass)) {
-    if (layout.density)
-      check_positive(table.real[*layout.density], column_name(*layout.density), table.first_line, file);
     particles.mass =
-        layout.density ? gathered(table.real[*layout.density], order) : std::vector<double>(n, layout.common_density);
+        layout.density ? std::move(table.real[*layout.density]) : std::vector<double>(n, layout.common_density);
     for (std::size_t i = 0; i < n; ++i)
       particles.mass[i] *= 4.0 / 3.0 * std::numbers::pi * radius[i] * radius[i] * radius[i];
   }
   if (layout.wanted.has(Column::radius)) particles.radius = std::move(radius);
-
   if (layout.type) {
-    const std::vector<std::int64_t>& type = table.whole[*layout.type];
-    const auto bad = std::find_if(type.begin(), type.end(), [](std::int64_t t) {
-      return t < std::numeric_limits<int>::min() || t > std::numeric_limits<int>::max();
-    });
-    if (bad != type.end())
-      throw InputError({{file, table.first_line + static_cast<std::size_t>(bad - type.begin())},
-                        "bad value in column type",
-                        std::to_string(*bad),
-                        "a particle type",
-                        {}});
-    particles.type.resize(n);
-    for (std::size_t i = 0; i < n; ++i) particles.type[i] = static_cast<int>(type[order[i]]);
+    reserve_pages(particles.type, n);
+    particles.type.assign(table.whole[*layout.type].begin(), table.whole[*layout.type].end());
   }
   return particles;
 }

@@ -35,7 +35,6 @@ ParticleLayout particle_layout(const FrameHeader& header, const std::string& fil
 
 /// Checks and converts a table: ids unique, radii and masses positive, rows in ascending order of id. Throws
 /// InputError.
-Particles make_particles(const ParticleLayout& layout, const Table& table, const FrameHeader& header,
-                         const std::string& file);
+Particles make_particles(const ParticleLayout& layout, Table table, const FrameHeader& header, const std::string& file);
 
 }  // namespace grainvdb

@@ -23,6 +23,7 @@ class TextDump final : public DumpFile {
   void seek(const TextPosition& start) override { lines_.seek(start); }
 
  private:
+  bool skip_one_by_one(std::size_t count, std::size_t& left);
   void check_end_of_rows();
   [[noreturn]] void fail(const std::string& what, const std::string& found, const std::string& expected,
                          const std::string& hint = {}) const;
