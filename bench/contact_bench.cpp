@@ -1,5 +1,6 @@
 #include "contact_bench.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -60,6 +61,22 @@ double branch_error(const ContactMethod& method) {
       .disagreement(contacts_to_grids(Setting(h), apart, ones, 1, method), {.absolute = lucy_peak(cutoff)});
 }
 
+/// The baseline's closed form against the library's, which shares no code with it: the largest difference in units of
+/// what is tolerated.
+double closed_form_error(const Case& c) {
+  constexpr double tolerated = 1e-13;
+  double worst = 0;
+  for (std::size_t b = 0; b < c.branches.size(); b += 16) {
+    const auto from = [&](std::size_t a, int i) { return (i + 0.5) * h - c.branches.start[a][b]; };
+    const Vec3 arm{c.branches.arm[0][b], c.branches.arm[1][b], c.branches.arm[2][b]};
+    for_each_line_weight(c.branches, b, h, [&](int i, int j, int k, double w) {
+      const double other = c.setting.kernel.line_integral({from(0, i), from(1, j), from(2, k)}, arm);
+      worst = std::max(worst, std::abs(w - other) / (tolerated * lucy_peak(cutoff)));
+    });
+  }
+  return worst;
+}
+
 using Sum = std::function<Grids(const Case&)>;
 
 bool check(const std::string& name, const Case& c, const Sum& sum, double error) {
@@ -115,6 +132,7 @@ void register_contacts(const Sizes& sizes) {
 
 void check_contacts(const Sizes& sizes) {
   const Case& c = case_of(sizes.contact_particles);
+  check_once("contacts/closed form", [&] { return closed_form_error(c); });
   check("contacts/exact_scatter", c, exact, exact_error);
   for (const ContactMethod& method : contact_methods())
     check("contacts/grainvdb_" + method.name, c, library(method), known_error(method) + single_precision);
