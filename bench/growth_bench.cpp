@@ -44,7 +44,8 @@ void memory(benchmark::State& state, std::size_t particles, double h) {
     const double before = memory_status("VmRSS");
     const Grids grids = splat_to_grids(setting, scene, q, all_channels);
     const double peak = memory_status("VmHWM") - before;
-    const double kept = memory_status("VmRSS") - before;
+    double kept = 0;
+    for (const auto& grid : grids) kept += static_cast<double>(grid->memUsage());
     const auto voxels = static_cast<double>(grids[0]->activeVoxelCount());
     const auto n = static_cast<double>(scene.size());
     state.counters["particles"] = n;

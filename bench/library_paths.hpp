@@ -60,6 +60,7 @@ class PreparedLeaves {
 struct ContactMethod {
   std::string name;
   LineIntegral integral;
+  double error = 0;  ///< of one branch at most, in units of W(0)
 };
 std::vector<ContactMethod> contact_methods();
 
