@@ -34,8 +34,9 @@ struct BranchClass {
 /// The branches that can touch a leaf. The record of an entry holds its arm (3) and its values.
 struct LeafBranches {
   Grow<float> x, y, z;               ///< middles
+  Grow<float> ax, ay, az, arm2;      ///< arms, and their squared lengths
   std::vector<std::uint32_t> entry;  ///< of each candidate
-  const float* records = nullptr;    ///< [entry][stride], readable 32 floats past the end
+  const float* records = nullptr;    ///< [entry][stride]
   std::size_t stride = 0;
   float voxel = 0;
 
@@ -47,13 +48,10 @@ struct LeafBranches {
 void collect_branches(const Buckets& buckets, std::span<const std::size_t> cells, const Coord& leaf, double to_cutoff,
                       double reach, LeafBranches& to);
 
-/// Room for the branches of one block of voxels.
+/// Scratch memory of the functions below.
 struct BranchScratch {
-  Grow<float> x, y, z, ax, ay, az;  // middles and arms, relative to the middle of the block
-  Grow<float> middle2, along, arm2;
-  Grow<float> records;
-  Grow<float> weights, sums, largest, near;
-  std::vector<std::int32_t> chosen, in_brick;
+  std::vector<std::int32_t> chosen;
+  Grow<float> weights, sums;
 };
 
 /// A voxel that may or may not lie within one cutoff of a branch, by single precision.
@@ -64,18 +62,22 @@ struct DoubtfulVoxel {
 
 /// Adds to `mask` the voxels of `window` that certainly lie within one cutoff of a branch, and to `doubtful` those near
 /// the surface of some branch's reach. Bricks of `mask` that are complete already cost nothing.
-void reach_of_branches(const LeafBranches& leaf, float half_arm, const LeafMask& window, BranchScratch& scratch,
-                       LeafMask& mask, std::vector<DoubtfulVoxel>& doubtful);
+void reach_of_branches(const LeafBranches& leaf, const LeafMask& window, BranchScratch& scratch, LeafMask& mask,
+                       std::vector<DoubtfulVoxel>& doubtful);
 
 /// The candidates whose middle is within 1 + half_arm of a voxel, in their order.
 void branches_at_voxel(const LeafBranches& leaf, float half_arm, int offset, std::vector<std::int32_t>& out);
 
+/// sums[channel][offset] = Σ q Σ_nodes weight (1-r)³(1+3r), for the bricks with a voxel of `mask`; other voxels are left
+/// alone.
+void sum_branches(const LeafBranches& leaf, std::span<const BranchClass> classes, int channels, const LeafMask& mask,
+                  BranchScratch& scratch, float* sums);
+
 /// Blocks of 4³ voxels in a leaf, numbered 4 (x/4) + 2 (y/4) + z/4.
 inline constexpr int leaf_blocks = 8;
 
-/// sums[channel][offset] = Σ q Σ_nodes weight (1-r)³(1+3r), for the bricks with a voxel of `mask`; other voxels are left
-/// alone. |sums| below faint[block][channel] may have lost their accuracy to rounding at the rims of the supports.
-void sum_branches(const LeafBranches& leaf, std::span<const BranchClass> classes, int channels, const LeafMask& mask,
-                  BranchScratch& scratch, float* sums, float* faint);
+/// Sums whose magnitude is below faint[block][channel] may have lost their accuracy to rounding at the rims of the
+/// supports; 0 where there are none.
+void faint_limits(const LeafBranches& leaf, float half_arm, int channels, BranchScratch& scratch, float* faint);
 
 }  // namespace grainvdb

@@ -28,12 +28,9 @@ ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, c
   for (double& scale : scale_)
     if (scale == 0) scale = 1;
 
-  for (int n = 0; n <= 8; ++n) {
-    rules_.emplace_back(n == 0 ? std::span<const LineNode>{} : set.rule(n));
-    if (set.half_arm(n) >= 0) used_.push_back(n);
-  }
+  for (int n = 0; n <= 8; ++n) rules_.emplace_back(n == 0 ? std::span<const LineNode>{} : set.rule(n));
   records_.resize(buckets.point.size() * stride_ + Grow<float>::slack);
-  if (used_.size() > 1) points_.resize(buckets.point.size());
+  if (set.points_used().size() > 1) points_.resize(buckets.point.size());
   parallel_for(buckets.point.size(), [&](std::size_t e) {
     const std::size_t piece = buckets.point[e];
     const Vec3 arm = set.arm(piece);
@@ -47,7 +44,7 @@ ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, c
 }
 
 std::shared_ptr<const Topology> ContactLeaves::topology() const {
-  const double reach = (kernel_.cutoff() + std::max(set_.longest_half_arm(), 0.0)) / lattice_.voxel();
+  const double reach = (kernel_.cutoff() + set_.half_arm()) / lattice_.voxel();
   std::vector<Coord> leaves = leaves_in_reach(lattice_, set_.buckets(), reach);
   std::vector<LeafMask> masks(leaves.size());
   tbb::enumerable_thread_specific<ContactWork> work;
@@ -69,11 +66,11 @@ void ContactLeaves::collect(const Coord& leaf, ContactWork& work) const {
   to.stride = stride_;
   const double to_cutoff = lattice_.voxel() / kernel_.cutoff();
   to.voxel = static_cast<float>(to_cutoff);
-  collect_branches(set_.buckets(), work.cells, leaf, to_cutoff, 1 + set_.longest_half_arm() / kernel_.cutoff(), to);
+  collect_branches(set_.buckets(), work.cells, leaf, to_cutoff, 1 + set_.half_arm() / kernel_.cutoff(), to);
 }
 
 void ContactLeaves::find_cells(const Coord& leaf, ContactWork& work) const {
-  const double reach = (kernel_.cutoff() + set_.longest_half_arm()) / lattice_.voxel();
+  const double reach = (kernel_.cutoff() + set_.half_arm()) / lattice_.voxel();
   work.cells.clear();
   for_each_cell(set_.buckets(), leaf, reach, [&](std::size_t cell) { work.cells.push_back(cell); });
 }
@@ -83,7 +80,7 @@ void ContactLeaves::sort_by_rule(ContactWork& work) const {
   LeafBranches& from = work.candidates;
   std::array<std::size_t, 10> start{};
   if (points_.empty()) {
-    work.classes.assign(1, {0, from.size(), &rules_[static_cast<std::size_t>(used_.front())], half_arm()});
+    work.classes.assign(1, {0, from.size(), &rules_[static_cast<std::size_t>(set_.points_used().front())], half_arm()});
     return;
   }
   for (const std::uint32_t e : from.entry) ++start[points_[e] + 1U];
@@ -95,15 +92,16 @@ void ContactLeaves::sort_by_rule(ContactWork& work) const {
                               static_cast<float>(set_.half_arm(static_cast<int>(n)) / kernel_.cutoff())});
   LeafBranches& to = work.sorted;
   to.entry.resize(from.size());
-  to.x.room(from.size());
-  to.y.room(from.size());
-  to.z.room(from.size());
+  using Values = Grow<float> LeafBranches::*;
+  for (const Values column : {&LeafBranches::x, &LeafBranches::y, &LeafBranches::z, &LeafBranches::ax,
+                              &LeafBranches::ay, &LeafBranches::az, &LeafBranches::arm2})
+    (to.*column).room(from.size());
   for (std::size_t k = 0; k < from.size(); ++k) {
     const std::size_t at = start[points_[from.entry[k]]]++;
     to.entry[at] = from.entry[k];
-    to.x.data()[at] = from.x.data()[k];
-    to.y.data()[at] = from.y.data()[k];
-    to.z.data()[at] = from.z.data()[k];
+    for (const Values column : {&LeafBranches::x, &LeafBranches::y, &LeafBranches::z, &LeafBranches::ax,
+                                &LeafBranches::ay, &LeafBranches::az, &LeafBranches::arm2})
+      (to.*column)[at] = (from.*column)[k];
   }
   to.records = from.records;
   to.stride = from.stride;
@@ -130,7 +128,7 @@ LeafMask ContactLeaves::reached(const Coord& leaf, ContactWork& work) const {
 void ContactLeaves::add_reach(const Coord& leaf, const LeafMask& window, ContactWork& work, LeafMask& mask) const {
   collect(leaf, work);
   work.doubtful.clear();
-  reach_of_branches(work.candidates, half_arm(), window, work.scratch, mask, work.doubtful);
+  reach_of_branches(work.candidates, window, work.scratch, mask, work.doubtful);
   for (const DoubtfulVoxel& v : work.doubtful)
     if (!mask.test(v.offset) &&
         set_.reaches(set_.buckets().point[v.entry], from_middle(voxel_at(leaf, v.offset), v.entry)))
@@ -151,8 +149,8 @@ void ContactLeaves::run(std::size_t leaf, LeafBuffers& result, ContactWork& work
   sort_by_rule(work);
   work.sums.resize(channels_ * leaf_size);
   work.faint.resize(leaf_blocks * channels_);
-  sum_branches(work.candidates, work.classes, static_cast<int>(channels_), mask, work.scratch, work.sums.data(),
-               work.faint.data());
+  sum_branches(work.candidates, work.classes, static_cast<int>(channels_), mask, work.scratch, work.sums.data());
+  faint_limits(work.candidates, half_arm(), static_cast<int>(channels_), work.scratch, work.faint.data());
 
   const double peak = kernel_.value(0);
   for (std::size_t c = 0; c < channels_; ++c) {
@@ -170,14 +168,39 @@ void ContactLeaves::run(std::size_t leaf, LeafBuffers& result, ContactWork& work
     work.again.clear();
     for (std::size_t c = 0; c < channels_; ++c)
       if (std::abs(work.sums[c * leaf_size + static_cast<std::size_t>(v)]) < bar[c]) work.again.push_back(c);
+    if (work.again.empty()) return;
+    branches_at_voxel(work.candidates, half_arm(), v, work.at_voxel);
+    leave_out_large_sums(v, bar, work);
     if (!work.again.empty()) sum_in_double(origin, leaf, v, work, result);
   });
+}
+
+/// Leaves only those channels to be summed again whose sum of |terms| is not surely large: most small sums inside the
+/// material are differences of large terms.
+void ContactLeaves::leave_out_large_sums(int offset, const float* bar, ContactWork& work) const {
+  const LeafBranches& all = work.candidates;
+  const auto at = [&](int n) { return all.voxel * (static_cast<float>(n) - 3.5F); };
+  const float x = at(offset >> 6), y = at((offset >> 3) & 7), z = at(offset & 7);
+  work.certain.assign(channels_, 0.0F);
+  // The middle of the list holds the branches of the nearest cells.
+  const std::size_t count = work.at_voxel.size();
+  for (std::size_t n = 0; n < count && !work.again.empty(); ++n) {
+    const auto k = static_cast<std::size_t>(work.at_voxel[(n + count / 2) % count]);
+    const float dx = x - all.x[k], dy = y - all.y[k], dz = z - all.z[k];
+    const float r = std::sqrt(dx * dx + dy * dy + dz * dz) + 0.5F * std::sqrt(all.arm2[k]);
+    if (!(r < 1)) continue;
+    const float least = (1 - r) * (1 - r) * (1 - r) * (1 + 3 * r);
+    const float* value = all.records + all.entry[k] * all.stride + 3;
+    std::erase_if(work.again, [&](std::size_t c) {
+      work.certain[c] += least * std::abs(value[c]);
+      return work.certain[c] > 2 * bar[c];
+    });
+  }
 }
 
 void ContactLeaves::sum_in_double(const Coord& origin, std::size_t leaf, int offset, ContactWork& work,
                                   LeafBuffers& result) const {
   for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] = 0;
-  branches_at_voxel(work.candidates, half_arm(), offset, work.at_voxel);
   for (const std::int32_t k : work.at_voxel) {
     const std::uint32_t e = work.candidates.entry[static_cast<std::size_t>(k)];
     const std::size_t piece = set_.buckets().point[e];

@@ -17,7 +17,7 @@ struct ContactWork {
   std::vector<DoubtfulVoxel> doubtful;
   std::vector<std::int32_t> at_voxel;
   std::vector<std::size_t> again;  // channels of a voxel to be summed in double
-  std::vector<float> sums, faint;
+  std::vector<float> sums, faint, certain;
   BranchScratch scratch;
 };
 
@@ -39,9 +39,10 @@ class ContactLeaves {
   LeafMask reached(const Coord& leaf, ContactWork& work) const;
   void add_reach(const Coord& leaf, const LeafMask& window, ContactWork& work, LeafMask& mask) const;
   void run(std::size_t leaf, LeafBuffers& result, ContactWork& work) const;
+  void leave_out_large_sums(int offset, const float* bar, ContactWork& work) const;
   void sum_in_double(const Coord& origin, std::size_t leaf, int offset, ContactWork& work, LeafBuffers& result) const;
   Vec3 from_middle(const Coord& voxel, std::size_t entry) const;
-  float half_arm() const { return static_cast<float>(set_.longest_half_arm() / kernel_.cutoff()); }
+  float half_arm() const { return static_cast<float>(set_.half_arm() / kernel_.cutoff()); }
 
   const Lattice& lattice_;
   const LucyKernel& kernel_;
@@ -53,7 +54,6 @@ class ContactLeaves {
   std::vector<float> records_;        // [entry][arm, values]: 4 (3 + channels) bytes per entry
   std::vector<std::uint8_t> points_;  // of each entry; empty when all take the same
   std::vector<BranchRule> rules_;     // by number of points
-  std::vector<int> used_;             // numbers of points that occur, ascending
 };
 
 }  // namespace grainvdb

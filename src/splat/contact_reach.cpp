@@ -45,16 +45,23 @@ void CollectBranches(const Buckets& buckets, std::span<const std::size_t> cells,
     }
   }
   to.entry.resize(n);
+  for (std::size_t k = 0; k < n; ++k) {
+    const float* arm = to.records + to.entry[k] * to.stride;
+    to.ax[k] = arm[0];
+    to.ay[k] = arm[1];
+    to.az[k] = arm[2];
+    to.arm2[k] = arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2];
+  }
 }
 
-/// Squared distances of a brick's voxels from branch i of the block.
-HWY_INLINE V distance2(const BranchScratch& b, std::size_t i, V px, V py, V pz) {
-  const V ax = hn::Set(d, b.ax.data()[i]), ay = hn::Set(d, b.ay.data()[i]), az = hn::Set(d, b.az.data()[i]);
-  const V dx = hn::Sub(px, hn::Set(d, b.x.data()[i])), dy = hn::Sub(py, hn::Set(d, b.y.data()[i])),
-          dz = hn::Sub(pz, hn::Set(d, b.z.data()[i]));
-  const float arm2 = b.arm2.data()[i];
+/// Squared distances of voxels from a branch.
+HWY_INLINE V distance2(const LeafBranches& b, std::size_t i, const Voxels& at) {
+  const V ax = hn::Set(d, b.ax[i]), ay = hn::Set(d, b.ay[i]), az = hn::Set(d, b.az[i]);
+  const V dx = hn::Sub(at.x, hn::Set(d, b.x[i])), dy = hn::Sub(at.y, hn::Set(d, b.y[i])),
+          dz = hn::Sub(at.z, hn::Set(d, b.z[i]));
   const V half = hn::Set(d, 0.5F);
-  const V foot = hn::Mul(hn::MulAdd(dx, ax, hn::MulAdd(dy, ay, hn::Mul(dz, az))), hn::Set(d, arm2 > 0 ? 1 / arm2 : 0));
+  const V foot = hn::Mul(hn::MulAdd(dx, ax, hn::MulAdd(dy, ay, hn::Mul(dz, az))),
+                         hn::Set(d, b.arm2[i] > 0 ? 1 / b.arm2[i] : 0));
   const V s = hn::Max(hn::Min(foot, half), hn::Neg(half));
   const V ex = hn::NegMulAdd(s, ax, dx), ey = hn::NegMulAdd(s, ay, dy), ez = hn::NegMulAdd(s, az, dz);
   return hn::MulAdd(ex, ex, hn::MulAdd(ey, ey, hn::Mul(ez, ez)));
@@ -66,72 +73,34 @@ HWY_INLINE std::uint32_t bits_of(hn::Mask<D> mask) {
   return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8;
 }
 
-void ReachOfBranches(const LeafBranches& leaf, float half_arm, const LeafMask& window, BranchScratch& scratch,
-                     LeafMask& mask, std::vector<DoubtfulVoxel>& doubtful) {
+void ReachOfBranches(const LeafBranches& leaf, const LeafMask& window, BranchScratch& scratch, LeafMask& mask,
+                     std::vector<DoubtfulVoxel>& doubtful) {
   const float h = leaf.voxel;
-  const BrickOffsets offsets(h);
-  const V ox = hn::Load(d, offsets.at[0]), oy = hn::Load(d, offsets.at[1]), oz = hn::Load(d, offsets.at[2]);
   scratch.chosen.resize(leaf.size() + 2 * lanes);
-  scratch.in_brick.resize(leaf.size() + 2 * lanes);
-  for (Grow<float>* room : {&scratch.x, &scratch.y, &scratch.z, &scratch.ax, &scratch.ay, &scratch.az, &scratch.arm2})
-    room->room(leaf.size());
+  std::int32_t* const chosen = scratch.chosen.data();
   const V surely = hn::Set(d, 1 - touch), perhaps = hn::Set(d, 1 + touch);
-
-  for (int bx = 0; bx < leaf_edge; bx += block)
-    for (int by = 0; by < leaf_edge; by += block)
-      for (int bz = 0; bz < leaf_edge; bz += block) {
-        const CentredBox box = block_box(h, bx, by, bz);
-        std::size_t count = 0;
-        bool loaded = false;
-        for (int x = 0; x < block; x += brick_x)
-          for (int y = 0; y < block; y += brick_y)
-            for (int z = 0; z < block; z += brick_z) {
-              const std::uint32_t wanted = brick_bits(window, bx + x, by + y, bz + z);
-              std::uint32_t found = brick_bits(mask, bx + x, by + y, bz + z);
-              if ((wanted & ~found) == 0) continue;
-              if (!loaded) {
-                loaded = true;
-                count = pick_middles(leaf.x.data(), leaf.y.data(), leaf.z.data(), 0, leaf.size(), box,
-                                     1 + half_arm + touch, scratch.chosen.data());
-                for (std::size_t k = 0; k < count; ++k) {
-                  const auto i = static_cast<std::size_t>(scratch.chosen[k]);
-                  const float* arm = leaf.records + leaf.entry[i] * leaf.stride;
-                  scratch.x.data()[k] = leaf.x.data()[i] - box.middle[0];
-                  scratch.y.data()[k] = leaf.y.data()[i] - box.middle[1];
-                  scratch.z.data()[k] = leaf.z.data()[i] - box.middle[2];
-                  scratch.ax.data()[k] = arm[0];
-                  scratch.ay.data()[k] = arm[1];
-                  scratch.az.data()[k] = arm[2];
-                  scratch.arm2.data()[k] = arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2];
-                }
-              }
-              const CentredBox brick = brick_box(h, x, y, z);
-              const std::size_t n = pick_branches(scratch, count, brick, scratch.in_brick.data());
-              const V px = hn::Add(ox, hn::Set(d, brick.middle[0] - brick.half[0]));
-              const V py = hn::Add(oy, hn::Set(d, brick.middle[1] - brick.half[1]));
-              const V pz = hn::Add(oz, hn::Set(d, brick.middle[2] - brick.half[2]));
-              for (std::size_t k = 0; k < n && (wanted & ~found) != 0; ++k) {
-                const auto i = static_cast<std::size_t>(scratch.in_brick[k]);
-                const V r2 = distance2(scratch, i, px, py, pz);
-                found |= bits_of(hn::Lt(r2, surely)) & wanted;
-                std::uint32_t open = bits_of(hn::Lt(r2, perhaps)) & wanted & ~found;
-                for (; open != 0; open &= open - 1)
-                  doubtful.push_back({leaf.entry[static_cast<std::size_t>(scratch.chosen[i])],
-                                      lane_offset(bx + x, by + y, bz + z, std::countr_zero(open))});
-              }
-              set_brick_bits(mask, bx + x, by + y, bz + z, found);
-            }
-      }
+  for_each_brick([&](const VoxelBox& brick) {
+    const std::uint32_t wanted = brick_bits(window, brick);
+    std::uint32_t found = brick_bits(mask, brick);
+    if ((wanted & ~found) == 0) return;
+    const std::size_t n = pick_branches(leaf, 0, leaf.size(), centres_of(brick, brick_x, brick_y, brick_z, h), chosen);
+    const Voxels at = brick_voxels(brick, h);
+    for (std::size_t k = 0; k < n && (wanted & ~found) != 0; ++k) {
+      const auto i = static_cast<std::size_t>(chosen[k]);
+      const V r2 = distance2(leaf, i, at);
+      found |= bits_of(hn::Lt(r2, surely)) & wanted;
+      std::uint32_t open = bits_of(hn::Lt(r2, perhaps)) & wanted & ~found;
+      for (; open != 0; open &= open - 1)
+        doubtful.push_back({leaf.entry[i], lane_offset(brick, std::countr_zero(open))});
+    }
+    set_brick_bits(mask, brick, found);
+  });
 }
 
 void BranchesAtVoxel(const LeafBranches& leaf, float half_arm, int offset, std::vector<std::int32_t>& out) {
-  const float h = leaf.voxel;
-  const CentredBox voxel{{h * (static_cast<float>(offset >> 6) - 3.5F), h * (static_cast<float>((offset >> 3) & 7) - 3.5F),
-                          h * (static_cast<float>(offset & 7) - 3.5F)},
-                         {0, 0, 0}};
+  const VoxelBox voxel{offset >> 6, (offset >> 3) & 7, offset & 7, 1};
   out.resize(leaf.size() + 2 * lanes);
-  out.resize(pick_middles(leaf.x.data(), leaf.y.data(), leaf.z.data(), 0, leaf.size(), voxel, 1 + half_arm + touch,
-                          out.data()));
+  out.resize(pick_middles(leaf, centres_of(voxel, 1, 1, 1, leaf.voxel), 1 + half_arm + touch, out.data()));
 }
 
 }  // namespace
@@ -151,12 +120,16 @@ void collect_branches(const Buckets& buckets, std::span<const std::size_t> cells
   to.x.room(most);
   to.y.room(most);
   to.z.room(most);
+  to.ax.room(most);
+  to.ay.room(most);
+  to.az.room(most);
+  to.arm2.room(most);
   to.entry.resize(most + Grow<float>::slack);
   HWY_DYNAMIC_DISPATCH(CollectBranches)(buckets, cells, leaf, to_cutoff, reach, to);
 }
-void reach_of_branches(const LeafBranches& leaf, float half_arm, const LeafMask& window, BranchScratch& scratch,
-                       LeafMask& mask, std::vector<DoubtfulVoxel>& doubtful) {
-  HWY_DYNAMIC_DISPATCH(ReachOfBranches)(leaf, half_arm, window, scratch, mask, doubtful);
+void reach_of_branches(const LeafBranches& leaf, const LeafMask& window, BranchScratch& scratch, LeafMask& mask,
+                       std::vector<DoubtfulVoxel>& doubtful) {
+  HWY_DYNAMIC_DISPATCH(ReachOfBranches)(leaf, window, scratch, mask, doubtful);
 }
 void branches_at_voxel(const LeafBranches& leaf, float half_arm, int offset, std::vector<std::int32_t>& out) {
   HWY_DYNAMIC_DISPATCH(BranchesAtVoxel)(leaf, half_arm, offset, out);

@@ -14,7 +14,7 @@ LeafBuffers sum_exactly(const Lattice& lattice, const LucyKernel& kernel, const 
                         std::shared_ptr<const Topology> topology, std::span<const double> q, int channels) {
   const auto width = static_cast<std::size_t>(channels);
   const double h = lattice.voxel();
-  return gather(lattice, set.buckets(), (kernel.cutoff() + set.longest_half_arm()) / h, std::move(topology), channels,
+  return gather(lattice, set.buckets(), (kernel.cutoff() + set.half_arm()) / h, std::move(topology), channels,
                 [&](std::size_t entry, const LeafWindow& window, double* sums) {
                   const std::size_t b = set.buckets().point[entry];
                   const Vec3 arm = set.arm(b);
