@@ -33,7 +33,7 @@ Sum9 volume_integral(const FieldCopy& f, double h) {
 TEST(StressIdentities, VolumeIntegralInAPeriodicBox) {
   const Scene scene = periodic_scene();
   const Frame& f = scene.frames[0];
-  for (const char* method : {"exact", "gauss1", "gauss2", "gauss3", "gauss5", "gauss8"}) {
+  for (const char* method : {"adaptive", "exact", "gauss1", "gauss2", "gauss3", "gauss5", "gauss8"}) {
     SCOPED_TRACE(method);
     Pipeline p = scene.pipeline({"contact_stress", "kinetic_stress", "stress"});
     set_option(p, "contact_stress", "line_integral", std::string(method));
@@ -131,6 +131,7 @@ TEST(StressIdentities, StaticColumn) {
     }
   }
   Pipeline p = make_pipeline(h, {0, 0, 0.1}, c, {"contact_stress"});
+  set_option(p, "contact_stress", "line_integral", std::string("exact"));
   p.select.types = {1};
   const Result r = run(p, {f});
   const FieldCopy& s = r.only().field("contact_stress");
