@@ -88,7 +88,6 @@ class BruteForce : public ::testing::TestWithParam<Case> {
  protected:
   BruteForce() : scene(GetParam().scene()), pipeline(scene.pipeline(all_fields())) {
     set_thresholds(pipeline);
-    set_option(pipeline, "contact_stress", "line_integral", text("exact"));  // what the brute force can know
     GetParam().set(pipeline);
     result = run(pipeline, scene.frames);
     reference.emplace(coarse_grain(scene.frames, pipeline));

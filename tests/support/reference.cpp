@@ -292,8 +292,8 @@ Reference coarse_grain(const std::vector<Frame>& frames, const Pipeline& pipelin
   fields["temperature"] = ratio_of(total.fluctuation, 1, total.volume, 1);
   fields["rotational_fluctuation"] = ratio_of(total.spin_fluctuation, 1, total.volume, 1);
   fields["contact_stress"] = mean_of(total.contact, 9, count);
-  if (text_option(pipeline, "contact_stress", "line_integral") == "exact")
-    fields["contact_stress"].rounding = contact_sum_rounding;
+  fields["contact_stress"].rounding =
+      text_option(pipeline, "contact_stress", "line_integral") == "exact" ? contact_sum_rounding : gauss_sum_rounding;
   fields["kinetic_stress"] = mean_of(total.kinetic, 9, count, 9);
   fields["gradient_by_kernel"] = gradient_by_kernel(total);
   return result;
