@@ -75,8 +75,8 @@ void PreparedLeaves::splat() {
 }
 
 std::vector<ContactMethod> contact_methods() {
-  std::vector<ContactMethod> methods{{"exact", {0}}};
-  for (const int n : {2, 3, 4}) methods.push_back({"gauss" + std::to_string(n), {n}});
+  std::vector<ContactMethod> methods{{"adaptive", LineIntegral::adaptive()}, {"exact", LineIntegral::exact()}};
+  for (const int n : {2, 3, 4}) methods.push_back({"gauss" + std::to_string(n), LineIntegral::gauss(n)});
   return methods;
 }
 

@@ -47,7 +47,7 @@ HWY_INLINE std::size_t pick_middles(const LeafBranches& leaf, const CentredBox& 
     const V dz = beyond(hn::Load(d, leaf.z.data() + i), box.middle[2], box.half[2]);
     auto near = hn::Lt(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), reach2);
     if (i + lanes > leaf.size()) near = hn::And(near, hn::FirstN(d, leaf.size() - i));
-    n += hn::CompressStore(index, hn::RebindMask(di, near), di, out + n);
+    n += store_some(index, hn::RebindMask(di, near), di, out + n);
   }
   return n;
 }
@@ -71,7 +71,7 @@ HWY_INLINE std::size_t pick_branches(const LeafBranches& leaf, std::size_t begin
                    hn::MulAdd(dy, hn::LoadU(d, leaf.ay.data() + i), hn::Mul(dz, hn::LoadU(d, leaf.az.data() + i))));
     auto near = hn::Lt(hn::NegMulAdd(half, hn::Abs(fna), f2), hn::Add(hn::Sqrt(f2), slack));
     if (i + lanes > end) near = hn::And(near, hn::FirstN(d, end - i));
-    n += hn::CompressStore(index, hn::RebindMask(di, near), di, out + n);
+    n += store_some(index, hn::RebindMask(di, near), di, out + n);
   }
   return n;
 }

@@ -37,10 +37,10 @@ void CollectBranches(const Buckets& buckets, std::span<const std::size_t> cells,
       const V dx = beyond(x, 0, box.half[0]), dy = beyond(y, 0, box.half[1]), dz = beyond(z, 0, box.half[2]);
       auto near = hn::Lt(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), reach2);
       if (i + lanes > count) near = hn::And(near, hn::FirstN(d, count - i));
-      hn::CompressStore(x, near, d, to.x.data() + n);
-      hn::CompressStore(y, near, d, to.y.data() + n);
-      hn::CompressStore(z, near, d, to.z.data() + n);
-      n += hn::CompressStore(entry, hn::RebindMask(du, near), du, to.entry.data() + n);
+      store_some(x, near, d, to.x.data() + n);
+      store_some(y, near, d, to.y.data() + n);
+      store_some(z, near, d, to.z.data() + n);
+      n += store_some(entry, hn::RebindMask(du, near), du, to.entry.data() + n);
       entry = hn::Add(entry, hn::Set(du, static_cast<std::uint32_t>(lanes)));
     }
   }
