@@ -76,7 +76,11 @@ void PreparedLeaves::splat() {
 
 std::vector<ContactMethod> contact_methods() {
   // On half branches of c/6; those of the closed form are stored in single precision.
-  return {{"exact", {0}, 1e-6}, {"gauss2", {2}, 4e-4}, {"gauss3", {3}, 3e-5}, {"gauss4", {4}, 1e-5}};
+  return {{"adaptive", LineIntegral::adaptive(), 3e-5},
+          {"exact", LineIntegral::exact(), 1e-6},
+          {"gauss2", LineIntegral::gauss(2), 4e-4},
+          {"gauss3", LineIntegral::gauss(3), 4e-5},
+          {"gauss4", LineIntegral::gauss(4), 1.1e-5}};
 }
 
 Grids contacts_to_grids(const Setting& setting, const HalfBranches& branches, std::span<const double> q, int channels,

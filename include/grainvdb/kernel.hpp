@@ -1,8 +1,10 @@
 #pragma once
 /// The Lucy kernel (physics eq. 9): W(r) = 105/(16 π c³) (1-q)³ (1+3q), q = r/c < 1, else 0; ∫ W dV = 1.
 #include <cmath>
+#include <span>
 
 #include "grainvdb/box.hpp"
+#include "grainvdb/line_rule.hpp"
 
 namespace grainvdb {
 
@@ -27,6 +29,15 @@ class LucyKernel {
   /// ∫₀¹ W(|p + s a|) ds, the mean of W along the straight branch from p to p + a, in closed form
   /// (physics section 2), accurate to rounding for short branches and branches through the origin too [1/length³].
   double line_integral(const Vec3& p, const Vec3& a) const;
+
+  /// The same by a quadrature rule.
+  double line_integral(const Vec3& p, const Vec3& a, std::span<const LineNode> rule) const;
+
+  /// The same by as few points as keep the error within lucy_rule_error W(0).
+  double line_integral_adaptive(const Vec3& p, const Vec3& a) const;
+
+  /// Whether a point of the branch from p to p + a lies within the support: where its line integral is positive.
+  bool reaches(const Vec3& p, const Vec3& a) const;
 
   /// The same by an n-point Gauss-Legendre rule, 1 ≤ n ≤ 8.
   double line_integral_gauss(const Vec3& p, const Vec3& a, int n) const;

@@ -18,7 +18,17 @@ using MomentPtr = std::shared_ptr<const Moment>;
 
 /// How the line integral of W along a half branch of a contact is evaluated.
 struct LineIntegral {
-  int gauss_points = 0;  ///< 0: closed form; 1 … 8: Gauss-Legendre points
+  enum class Method {
+    adaptive,  ///< as few points as keep the error of every half branch within 3e-5 W(0)
+    exact,     ///< closed form, in double precision
+    gauss      ///< Gauss-Legendre rule
+  };
+  Method method = Method::adaptive;
+  int gauss_points = 0;  ///< 1 … 8 for Method::gauss
+
+  static constexpr LineIntegral adaptive() { return {}; }
+  static constexpr LineIntegral exact() { return {Method::exact, 0}; }
+  static constexpr LineIntegral gauss(int points) { return {Method::gauss, points}; }
   bool operator==(const LineIntegral&) const = default;
 };
 

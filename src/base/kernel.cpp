@@ -11,70 +11,6 @@
 namespace grainvdb {
 namespace {
 
-struct Node {
-  double x;       // on [-1, 1]
-  double weight;  // the weights of a rule add up to 2
-};
-
-constexpr std::array<Node, 1> gauss_1{{{0, 2}}};
-constexpr std::array<Node, 2> gauss_2{{{-0.57735026918962576451, 1}, {0.57735026918962576451, 1}}};
-constexpr std::array<Node, 3> gauss_3{{{-0.77459666924148337704, 0.55555555555555555556},
-                                       {0, 0.88888888888888888889},
-                                       {0.77459666924148337704, 0.55555555555555555556}}};
-constexpr std::array<Node, 4> gauss_4{{{-0.86113631159405257522, 0.34785484513745385737},
-                                       {-0.33998104358485626480, 0.65214515486254614263},
-                                       {0.33998104358485626480, 0.65214515486254614263},
-                                       {0.86113631159405257522, 0.34785484513745385737}}};
-constexpr std::array<Node, 5> gauss_5{{{-0.90617984593866399280, 0.23692688505618908751},
-                                       {-0.53846931010568309104, 0.47862867049936646804},
-                                       {0, 0.56888888888888888889},
-                                       {0.53846931010568309104, 0.47862867049936646804},
-                                       {0.90617984593866399280, 0.23692688505618908751}}};
-constexpr std::array<Node, 6> gauss_6{{{-0.93246951420315202781, 0.17132449237917034504},
-                                       {-0.66120938646626451366, 0.36076157304813860757},
-                                       {-0.23861918608319690863, 0.46791393457269104739},
-                                       {0.23861918608319690863, 0.46791393457269104739},
-                                       {0.66120938646626451366, 0.36076157304813860757},
-                                       {0.93246951420315202781, 0.17132449237917034504}}};
-constexpr std::array<Node, 7> gauss_7{{{-0.94910791234275852453, 0.12948496616886969327},
-                                       {-0.74153118559939443986, 0.27970539148927666790},
-                                       {-0.40584515137739716691, 0.38183005050511894495},
-                                       {0, 0.41795918367346938776},
-                                       {0.40584515137739716691, 0.38183005050511894495},
-                                       {0.74153118559939443986, 0.27970539148927666790},
-                                       {0.94910791234275852453, 0.12948496616886969327}}};
-constexpr std::array<Node, 8> gauss_8{{{-0.96028985649753623168, 0.10122853629037625915},
-                                       {-0.79666647741362673959, 0.22238103445337447054},
-                                       {-0.52553240991632898582, 0.31370664587788728734},
-                                       {-0.18343464249564980494, 0.36268378337836198297},
-                                       {0.18343464249564980494, 0.36268378337836198297},
-                                       {0.52553240991632898582, 0.31370664587788728734},
-                                       {0.79666647741362673959, 0.22238103445337447054},
-                                       {0.96028985649753623168, 0.10122853629037625915}}};
-
-std::span<const Node> gauss_rule(int n) {
-  switch (n) {
-    case 1:
-      return gauss_1;
-    case 2:
-      return gauss_2;
-    case 3:
-      return gauss_3;
-    case 4:
-      return gauss_4;
-    case 5:
-      return gauss_5;
-    case 6:
-      return gauss_6;
-    case 7:
-      return gauss_7;
-    case 8:
-      return gauss_8;
-    default:
-      throw std::invalid_argument("a Gauss-Legendre rule of " + std::to_string(n) + " points is not offered");
-  }
-}
-
 double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -112,7 +48,7 @@ double integral_inside(double b2, double t, double length) {
   if (b2 + middle * middle < 4 * length * length)
     return std::max(0.0, antiderivative(b2, t + length) - antiderivative(b2, t));
   double sum = 0;
-  for (const Node& node : gauss_8) {
+  for (const LineNode& node : gauss_rule(8)) {
     const double x = middle + 0.5 * length * node.x;
     sum += node.weight * shape(b2 + x * x);
   }
@@ -155,14 +91,36 @@ double LucyKernel::line_integral(const Vec3& p, const Vec3& a) const {
   return norm_ * integral_inside(b2, t + enter, leave - enter) / length;
 }
 
-double LucyKernel::line_integral_gauss(const Vec3& p, const Vec3& a, int n) const {
+double LucyKernel::line_integral(const Vec3& p, const Vec3& a, std::span<const LineNode> rule) const {
   double sum = 0;
-  for (const Node& node : gauss_rule(n)) {
+  for (const LineNode& node : rule) {
     const double s = 0.5 * (1 + node.x);
     const Vec3 x{p[0] + s * a[0], p[1] + s * a[1], p[2] + s * a[2]};
     sum += node.weight * value(dot(x, x));
   }
   return 0.5 * sum;
+}
+
+double LucyKernel::line_integral_gauss(const Vec3& p, const Vec3& a, int n) const {
+  return line_integral(p, a, gauss_rule(n));
+}
+
+double LucyKernel::line_integral_adaptive(const Vec3& p, const Vec3& a) const {
+  const LineDivision division = divide_branch(std::sqrt(dot(a, a)) * inverse_cutoff_);
+  const double share = 1.0 / division.parts;
+  const Vec3 part{share * a[0], share * a[1], share * a[2]};
+  double sum = 0;
+  for (int k = 0; k < division.parts; ++k)
+    sum += line_integral({p[0] + k * part[0], p[1] + k * part[1], p[2] + k * part[2]}, part,
+                         lucy_rule(division.points));
+  return share * sum;
+}
+
+bool LucyKernel::reaches(const Vec3& p, const Vec3& a) const {
+  const double aa = dot(a, a);
+  const double s = aa > 0 ? std::clamp(-dot(p, a) / aa, 0.0, 1.0) : 0.0;
+  const Vec3 nearest{p[0] + s * a[0], p[1] + s * a[1], p[2] + s * a[2]};
+  return dot(nearest, nearest) < cutoff_ * cutoff_;
 }
 
 double LucyKernel::marginal(double z) const {

@@ -1,10 +1,16 @@
 #include "bin/branches.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <sstream>
 #include <string>
+#include <vector>
 
+#include "base/parallel.hpp"
 #include "grainvdb/error.hpp"
 
 namespace grainvdb {
@@ -28,17 +34,41 @@ std::string pair_name(const Contacts& contacts, std::size_t k) {
   throw InputError(problem);
 }
 
-std::size_t particle_of(const Frame& frame, std::size_t contact, std::int64_t id) {
-  const auto& ids = frame.particles.id;
-  const auto it = std::lower_bound(ids.begin(), ids.end(), id);
-  if (it == ids.end() || *it != id)
+/// Rows of particles by id. Ids are ascending; where they are dense a table spares the search.
+class ParticleRows {
+ public:
+  explicit ParticleRows(const std::vector<std::int64_t>& ids) : ids_(ids) {
+    if (ids.empty()) return;
+    const auto span = static_cast<std::uint64_t>(ids.back()) - static_cast<std::uint64_t>(ids.front());
+    if (span >= 4 * ids.size()) return;
+    table_.assign(static_cast<std::size_t>(span) + 1, absent);
+    for (std::size_t i = 0; i < ids.size(); ++i) table_[static_cast<std::size_t>(ids[i] - ids[0])] = i;
+  }
+
+  static constexpr std::size_t absent = std::numeric_limits<std::size_t>::max();
+
+  std::size_t find(std::int64_t id) const {
+    if (ids_.empty() || id < ids_.front() || id > ids_.back()) return absent;
+    if (!table_.empty()) return table_[static_cast<std::size_t>(id - ids_.front())];
+    const auto it = std::lower_bound(ids_.begin(), ids_.end(), id);
+    return *it == id ? static_cast<std::size_t>(it - ids_.begin()) : absent;
+  }
+
+ private:
+  const std::vector<std::int64_t>& ids_;
+  std::vector<std::size_t> table_;
+};
+
+std::size_t particle_of(const Frame& frame, const ParticleRows& rows, std::size_t contact, std::int64_t id) {
+  const std::size_t row = rows.find(id);
+  if (row == ParticleRows::absent)
     fail(frame,
          "the contact between particles " + pair_name(frame.contacts, contact) +
              " names a particle that the frame lacks",
          "id " + std::to_string(id), "an id of the particle dump of this step",
          "The particle dump must hold every particle that has contacts, wall grains included; leave particles out with "
          "the pipeline's selection instead");
-  return static_cast<std::size_t>(it - ids.begin());
+  return row;
 }
 
 Vec3 difference(const Box& box, const Columns3& a, std::size_t i, const Columns3& b, std::size_t j) {
@@ -59,51 +89,63 @@ void check_arm(const Frame& frame, std::size_t contact, std::size_t particle, co
        found.str(), expected.str(), "Check that the contact columns are named rightly and belong to the same step");
 }
 
+/// Writes the two half branches of contact k to rows 2k and 2k+1.
+void add_contact(const Frame& frame, const ParticleRows& rows, std::size_t k, HalfBranches& to) {
+  const Contacts& contacts = frame.contacts;
+  const Particles& particles = frame.particles;
+  const std::size_t i = particle_of(frame, rows, k, contacts.id1[k]);
+  const std::size_t j = particle_of(frame, rows, k, contacts.id2[k]);
+  if (i == j)
+    fail(frame, "a contact joins a particle with itself", "id " + std::to_string(contacts.id1[k]), "two different ids",
+         {});
+  Vec3 arm_i;
+  Vec3 arm_j;
+  if (!contacts.point[0].empty()) {
+    arm_i = difference(frame.box, particles.position, i, contacts.point, k);
+    arm_j = difference(frame.box, particles.position, j, contacts.point, k);
+  } else {
+    const Vec3 l = difference(frame.box, particles.position, i, particles.position, j);
+    const double share = particles.radius[i] / (particles.radius[i] + particles.radius[j]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      arm_i[a] = share * l[a];
+      arm_j[a] = (share - 1) * l[a];
+    }
+  }
+  const auto write = [&](std::size_t row, std::size_t particle, const Vec3& arm, double sign) {
+    check_arm(frame, k, particle, arm);
+    for (std::size_t a = 0; a < 3; ++a) {
+      to.start[a][row] = particles.position[a][particle];
+      to.arm[a][row] = arm[a];
+      to.force[a][row] = sign * contacts.force[a][k];
+    }
+  };
+  write(2 * k, i, arm_i, 1);
+  write(2 * k + 1, j, arm_j, -1);
+}
+
 }  // namespace
 
 HalfBranches half_branches(const Frame& frame) {
   const Contacts& contacts = frame.contacts;
-  const Particles& particles = frame.particles;
-  const bool has_points = !contacts.point[0].empty();
-  if (contacts.size() > 0 && !has_points && particles.radius.empty())
+  if (contacts.size() > 0 && contacts.point[0].empty() && frame.particles.radius.empty())
     fail(frame, "the contacts have no contact point and the particles no radius", {}, "one or the other",
          "Give the radius of the grains in the pipeline file, or dump the contact points");
 
   HalfBranches branches;
   for (Columns3* columns : {&branches.start, &branches.arm, &branches.force})
-    for (auto& column : *columns) column.reserve(2 * contacts.size());
-
-  const auto add = [&](std::size_t contact, std::size_t particle, const Vec3& arm, double sign) {
-    check_arm(frame, contact, particle, arm);
-    for (int a = 0; a < 3; ++a) {
-      branches.start[a].push_back(particles.position[a][particle]);
-      branches.arm[a].push_back(arm[a]);
-      branches.force[a].push_back(sign * contacts.force[a][contact]);
-    }
-  };
-
-  for (std::size_t k = 0; k < contacts.size(); ++k) {
-    const std::size_t i = particle_of(frame, k, contacts.id1[k]);
-    const std::size_t j = particle_of(frame, k, contacts.id2[k]);
-    if (i == j)
-      fail(frame, "a contact joins a particle with itself", "id " + std::to_string(contacts.id1[k]),
-           "two different ids", {});
-    Vec3 arm_i;
-    Vec3 arm_j;
-    if (has_points) {
-      arm_i = difference(frame.box, particles.position, i, contacts.point, k);
-      arm_j = difference(frame.box, particles.position, j, contacts.point, k);
-    } else {
-      const Vec3 l = difference(frame.box, particles.position, i, particles.position, j);
-      const double share = particles.radius[i] / (particles.radius[i] + particles.radius[j]);
-      for (int a = 0; a < 3; ++a) {
-        arm_i[a] = share * l[a];
-        arm_j[a] = (share - 1) * l[a];
+    for (auto& column : *columns) column.resize(2 * contacts.size());
+  const ParticleRows rows(frame.particles.id);
+  // Of several contacts in error the first is reported, whichever thread meets its own first.
+  std::atomic<std::size_t> first_wrong = contacts.size();
+  parallel_ranges(contacts.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) try {
+        add_contact(frame, rows, k, branches);
+      } catch (const InputError&) {
+        for (std::size_t before = first_wrong; k < before && !first_wrong.compare_exchange_weak(before, k);) continue;
+        return;
       }
-    }
-    add(k, i, arm_i, 1);
-    add(k, j, arm_j, -1);
-  }
+  });
+  if (first_wrong < contacts.size()) add_contact(frame, rows, first_wrong, branches);
   return branches;
 }
 

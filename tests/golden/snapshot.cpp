@@ -16,6 +16,7 @@ Pipeline pipeline_of(std::int64_t step, const std::string& gradient) {
   p.frames = {index, index + 1, 1};
   set_option(p, "kinetic_stress", "reference", std::string("instantaneous"));
   set_option(p, "velocity_gradient", "method", gradient);
+  set_option(p, "contact_stress", "line_integral", std::string("exact"));
   return p;
 }
 

@@ -33,7 +33,7 @@ Sum9 volume_integral(const FieldCopy& f, double h) {
 TEST(StressIdentities, VolumeIntegralInAPeriodicBox) {
   const Scene scene = periodic_scene();
   const Frame& f = scene.frames[0];
-  for (const char* method : {"exact", "gauss1", "gauss2", "gauss3", "gauss5", "gauss8"}) {
+  for (const char* method : {"adaptive", "exact", "gauss1", "gauss2", "gauss3", "gauss5", "gauss8"}) {
     SCOPED_TRACE(method);
     Pipeline p = scene.pipeline({"contact_stress", "kinetic_stress", "stress"});
     set_option(p, "contact_stress", "line_integral", std::string(method));
@@ -131,6 +131,7 @@ TEST(StressIdentities, StaticColumn) {
     }
   }
   Pipeline p = make_pipeline(h, {0, 0, 0.1}, c, {"contact_stress"});
+  set_option(p, "contact_stress", "line_integral", std::string("exact"));
   p.select.types = {1};
   const Result r = run(p, {f});
   const FieldCopy& s = r.only().field("contact_stress");
@@ -177,7 +178,7 @@ TEST(StressIdentities, GaussRulesFromTheirNodes) {
       const std::size_t v = box.index(c).value();
       for (int k = 0; k < 9; ++k)
         EXPECT_NEAR(static_cast<double>(r.only().field("contact_stress").at(c, k)), expected.at(v, k),
-                    float_rounding * std::abs(expected.at(v, k)) + sum_rounding * expected.size(v, k));
+                    float_rounding * std::abs(expected.at(v, k)) + gauss_sum_rounding * expected.size(v, k));
     });
     EXPECT_EQ(active, static_cast<std::size_t>(std::count(expected.reached.begin(), expected.reached.end(), 1)));
   }

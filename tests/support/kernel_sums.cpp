@@ -81,20 +81,13 @@ Sums sum_over_particles(const VoxelBox& box, double cutoff, const Particles& p, 
   return sums;
 }
 
-struct Integral {
-  double value = 0;
-  bool reaches = false;
-};
-
-Integral gauss_rule(const Vec3& d, const Vec3& a, double cutoff, const Quadrature& rule) {
-  Integral result;
+double gauss_rule(const Vec3& d, const Vec3& a, double cutoff, const Quadrature& rule) {
+  double sum = 0;
   for (std::size_t g = 0; g < rule.node.size(); ++g) {
     const Vec3 x = along(d, rule.node[g], a);
-    const double r = std::sqrt(dot(x, x));
-    result.reaches = result.reaches || r < cutoff;
-    result.value += rule.weight[g] * lucy(r, cutoff);
+    sum += rule.weight[g] * lucy(std::sqrt(dot(x, x)), cutoff);
   }
-  return result;
+  return sum;
 }
 
 bool segment_reaches(const Vec3& d, const Vec3& a, double cutoff) {
@@ -210,9 +203,12 @@ Sums gradient_sums(const VoxelBox& box, double cutoff, const Particles& p, const
   });
 }
 
-Sums branch_sums(const VoxelBox& box, double cutoff, const Branches& b, const std::vector<double>& q, int channels,
-                 int gauss_points) {
-  const Quadrature rule = gauss_legendre(std::max(gauss_points, 1));
+namespace {
+
+/// Σ q weight(d, a) over the images of branches that reach a voxel, d from the branch's start.
+template <class Weight>
+Sums sum_over_branches(const VoxelBox& box, double cutoff, const Branches& b, const std::vector<double>& q,
+                       int channels, const Weight& weight) {
   Sums sums(box.size(), channels);
   for (std::size_t n = 0; n < box.size(); ++n) {
     const Vec3 x = box.centre(n);
@@ -220,12 +216,10 @@ Sums branch_sums(const VoxelBox& box, double cutoff, const Branches& b, const st
       const Vec3 reach{cutoff + std::abs(b.arm[i][0]), cutoff + std::abs(b.arm[i][1]), cutoff + std::abs(b.arm[i][2])};
       for_each_image(box.box(), x, b.start[i], reach, [&](const Vec3& d) {
         if (!segment_reaches(d, b.arm[i], cutoff)) return;
-        const Integral w =
-            gauss_points == 0 ? Integral{line_mean(d, b.arm[i], cutoff), true} : gauss_rule(d, b.arm[i], cutoff, rule);
-        if (!w.reaches) return;
+        const double w = weight(d, b.arm[i]);
         sums.reached[n] = 1;
         for (int c = 0; c < channels; ++c) {
-          const double term = q[i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)] * w.value;
+          const double term = q[i * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)] * w;
           const std::size_t at = sums.index(n, c);
           sums.value[at] += term;
           sums.magnitude[at] += std::abs(term);
@@ -234,6 +228,23 @@ Sums branch_sums(const VoxelBox& box, double cutoff, const Branches& b, const st
     }
   }
   return sums;
+}
+
+}  // namespace
+
+Sums branch_sums(const VoxelBox& box, double cutoff, const Branches& b, const std::vector<double>& q, int channels,
+                 int gauss_points) {
+  if (gauss_points == 0)
+    return sum_over_branches(box, cutoff, b, q, channels,
+                             [&](const Vec3& d, const Vec3& a) { return line_mean(d, a, cutoff); });
+  const Quadrature rule = gauss_legendre(gauss_points);
+  return sum_over_branches(box, cutoff, b, q, channels,
+                           [&](const Vec3& d, const Vec3& a) { return gauss_rule(d, a, cutoff, rule); });
+}
+
+Sums branch_magnitudes(const VoxelBox& box, double cutoff, const Branches& b, const std::vector<double>& q,
+                       int channels) {
+  return sum_over_branches(box, cutoff, b, q, channels, [](const Vec3&, const Vec3&) { return 1.0; });
 }
 
 }  // namespace grainvdb::testing

@@ -56,5 +56,8 @@ Sums gradient_sums(const VoxelBox& box, double cutoff, const Particles& p, const
 /// Σ q ∫₀¹ W(x - x_α + s a) ds; gauss_points 0 is the integral itself, otherwise the rule of so many points.
 Sums branch_sums(const VoxelBox& box, double cutoff, const Branches& b, const std::vector<double>& q, int channels,
                  int gauss_points);
+/// Σ |q| over the branches that reach a voxel, for bounds on errors of their integrals.
+Sums branch_magnitudes(const VoxelBox& box, double cutoff, const Branches& b, const std::vector<double>& q,
+                       int channels);
 
 }  // namespace grainvdb::testing

@@ -18,7 +18,7 @@ struct Scene {
   double cutoff = 0;
   Selection select;
 
-  /// A pipeline with default options on this lattice.
+  /// A pipeline on this lattice with default options, but exact line integrals: what a brute force can know.
   Pipeline pipeline(std::vector<std::string> fields) const;
 };
 

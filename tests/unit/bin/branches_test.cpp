@@ -105,6 +105,30 @@ TEST(HalfBranches, RadiiAreNotNeededWithPoints) {
   expect_near(row(half_branches(frame).arm, 1), {0.95, 0, 0});
 }
 
+TEST(HalfBranches, FindParticlesWhateverTheirIds) {
+  // Dense ids with gaps, and ids far apart, negative ones among them.
+  for (const std::int64_t step : {std::int64_t{1}, std::int64_t{3}, std::int64_t{1} << 60}) {
+    Frame frame;
+    frame.box = {{0, 0, 0}, {10, 10, 10}, {false, false, false}};
+    for (int k = 0; k < 5; ++k) add_particle(frame, (k - 2) * step, {2.0 * k, 0, 0}, 1);
+    for (int k = 0; k < 4; ++k) add_contact(frame, (k - 2) * step, (k - 1) * step, {1, 0, 0});
+    const HalfBranches b = half_branches(frame);
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(b.start[0][2 * k], 2.0 * static_cast<double>(k)) << step;
+      EXPECT_EQ(b.start[0][2 * k + 1], 2.0 * static_cast<double>(k + 1)) << step;
+    }
+    if (step == 1) continue;
+    add_contact(frame, 0, step - 1, {1, 0, 0});
+    EXPECT_THAT(message(frame), testing::HasSubstr("found id " + std::to_string(step - 1)));
+  }
+}
+
+TEST(HalfBranches, TheFirstContactInErrorIsReported) {
+  Frame frame = three_grains();
+  for (int k = 0; k < 20000; ++k) add_contact(frame, 7, k < 5000 ? 31 : 100000 + k, {1, 0, 0});
+  for (int repeat = 0; repeat < 5; ++repeat) EXPECT_THAT(message(frame), testing::HasSubstr("found id 105000"));
+}
+
 TEST(HalfBranches, UnknownParticleIsNamed) {
   for (const auto& [id1, id2] : {std::pair{7, 8}, std::pair{6, 7}, std::pair{31, 32}}) {
     Frame frame = three_grains();

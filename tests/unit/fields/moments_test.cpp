@@ -1,5 +1,6 @@
 // The values per particle and per half branch, from a frame made by hand.
 #include <array>
+#include <map>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -122,12 +123,13 @@ TEST(MomentValues, ContactStress) {
   view.b.arm = {{{1}, {2}, {3}}};
   view.b.force = {{{10}, {20}, {30}}};
   EXPECT_THAT(values("contact_stress", 0, {}, view), ElementsAre(-10, -20, -30, -20, -40, -60, -30, -60, -90));
-  for (int n = 0; n <= 8; ++n) {
-    const std::string method = n == 0 ? "exact" : "gauss" + std::to_string(n);
+  std::map<std::string, LineIntegral> methods{{"adaptive", LineIntegral::adaptive()}, {"exact", LineIntegral::exact()}};
+  for (int n = 1; n <= 8; ++n) methods["gauss" + std::to_string(n)] = LineIntegral::gauss(n);
+  for (const auto& [name, method] : methods) {
     const MomentPtr m =
-        moments_of(registry, "contact_stress", settings_with(registry, {{"contact_stress", "line_integral", method}}))
+        moments_of(registry, "contact_stress", settings_with(registry, {{"contact_stress", "line_integral", name}}))
             .at(0);
-    EXPECT_EQ(m->line_integral.gauss_points, n);
+    EXPECT_EQ(m->line_integral, method) << name;
     EXPECT_EQ(m->kind, Moment::Kind::contacts);
   }
 }

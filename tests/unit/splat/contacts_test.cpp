@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <stdexcept>
 #include <vector>
 
@@ -8,56 +7,13 @@
 
 #include "bin/branches.hpp"
 #include "splat/splat.hpp"
+#include "unit/splat/branch_scene.hpp"
 #include "unit/splat/scene.hpp"
 
 namespace grainvdb {
 namespace {
 
-constexpr LineIntegral exact{};
-
-// Half branches from random points, a sixth to half of the cutoff long.
-HalfBranches random_branches(const Scene& scene, std::size_t n, std::uint64_t seed) {
-  HalfBranches b;
-  b.start = scene.random_positions(n, seed);
-  std::mt19937_64 random(seed + 1);
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> uniform(1.0 / 6, 0.5);
-  for (std::size_t k = 0; k < n; ++k) {
-    Vec3 a{normal(random), normal(random), normal(random)};
-    const double scale = scene.cutoff * uniform(random) / norm(a);
-    for (std::size_t j = 0; j < 3; ++j) {
-      b.arm[j].push_back(a[j] * scale);
-      b.force[j].push_back(normal(random));
-    }
-  }
-  return b;
-}
-
-// Distance from the origin to the segment from p to p + a.
-double segment_distance(const Vec3& p, const Vec3& a) {
-  const double along = -(p[0] * a[0] + p[1] * a[1] + p[2] * a[2]) / (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-  const double s = std::clamp(along, 0.0, 1.0);
-  return norm({p[0] + s * a[0], p[1] + s * a[1], p[2] + s * a[2]});
-}
-
-// x - x_α for every image of the branch that reaches x: about the one with the nearest middle, its neighbours, as a
-// branch may reach more than half a period.
-std::vector<Vec3> images_in_reach(const Scene& scene, const Vec3& x, const Vec3& start, const Vec3& arm) {
-  const Vec3 middle{start[0] - arm[0] / 2, start[1] - arm[1] / 2, start[2] - arm[2] / 2};
-  const Vec3 d = scene.shortest(x, middle);
-  const auto shifts = [&](int axis) {
-    const double l = scene.box.length(axis);
-    return scene.box.periodic[static_cast<std::size_t>(axis)] ? std::vector<double>{-l, 0, l} : std::vector<double>{0};
-  };
-  std::vector<Vec3> result;
-  for (const double i : shifts(0))
-    for (const double j : shifts(1))
-      for (const double k : shifts(2)) {
-        const Vec3 p{d[0] + i - arm[0] / 2, d[1] + j - arm[1] / 2, d[2] + k - arm[2] / 2};
-        if (norm(p) < scene.cutoff + norm(arm) && segment_distance(p, arm) < scene.cutoff) result.push_back(p);
-      }
-  return result;
-}
+constexpr LineIntegral exact = LineIntegral::exact();
 
 class ContactSplat : public testing::TestWithParam<Scene> {
  protected:
@@ -128,35 +84,29 @@ TEST_P(ContactSplat, SumsEqualTheBruteForce) {
 }
 
 // At each voxel the same as the kernel's own integrals, to rounding.
-TEST_P(ContactSplat, EveryMethodIsTheSumOfItsLineIntegrals) {
+TEST_P(ContactSplat, IsTheSumOfItsLineIntegrals) {
   const auto q = random_values(branches.size(), 23);
   const double shift = position_error(branches.start);
-  for (int n : {0, 1, 2, 3, 8}) {
-    const LeafBuffers sums = splat_contacts(lattice, kernel, branches, q, 1, LineIntegral{n});
-    for (const Coord& voxel : scene.voxels(1.5 * scene.cutoff + 2 * scene.voxel)) {
-      double sum = 0, terms = 0, reached = 0;
-      for (std::size_t b = 0; b < branches.size(); ++b) {
-        const Vec3 arm = row(branches.arm, b);
-        for (const Vec3& p : images_in_reach(scene, lattice.centre(voxel), row(branches.start, b), arm)) {
-          const double w = n == 0 ? kernel.line_integral(p, arm) : kernel.line_integral_gauss(p, arm, n);
-          sum += q[b] * w;
-          terms += std::abs(q[b]) * w;
-          reached += std::abs(q[b]);
-        }
-      }
-      const double tolerance = 1e-13 * terms + reached * largest_gradient(scene.cutoff) * shift +
-                               (n == 0 ? 1e-14 * reached * lucy_peak(scene.cutoff) : 0);
-      EXPECT_NEAR(value_at(sums, voxel, 0), sum, tolerance) << n;
+  const LeafBuffers sums = splat_contacts(lattice, kernel, branches, q, 1, exact);
+  for (const ReachedVoxel& v : weigh_branches(
+           scene, branches, [&](const Vec3& p, const Vec3& a) { return kernel.line_integral(p, a); })) {
+    double sum = 0, terms = 0, reached = 0;
+    for (const auto& [b, w] : v.branches) {
+      sum += q[b] * w;
+      terms += std::abs(q[b]) * w;
+      reached += std::abs(q[b]);
     }
-    expect_zero_where_inactive(sums);
+    const double tolerance = 1e-13 * terms + reached * largest_gradient(scene.cutoff) * shift +
+                             1e-14 * reached * lucy_peak(scene.cutoff);
+    EXPECT_NEAR(value_at(sums, v.voxel, 0), sum, tolerance);
   }
+  expect_zero_where_inactive(sums);
 }
 
 TEST_P(ContactSplat, BytesDoNotDependOnThreads) {
   const HalfBranches many = random_branches(scene, 1000, 24);
   const auto q = random_values(many.size() * 2, 25);
-  for (int n : {0, 2})
-    expect_same_bytes_for_any_threads([&] { return splat_contacts(lattice, kernel, many, q, 2, LineIntegral{n}); });
+  expect_same_bytes_for_any_threads([&] { return splat_contacts(lattice, kernel, many, q, 2, exact); });
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, ContactSplat, testing::ValuesIn(scenes()),
@@ -190,15 +140,15 @@ TEST(ContactStress, VolumeIntegralIsMinusForceTimesBranch) {
     for (std::size_t b = 0; b < branches.size(); ++b)
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) q.push_back(-branches.force[i][b] * branches.arm[j][b]);
-    for (int n : {0, 1, 4}) {
-      const LeafBuffers sigma = splat_contacts(lattice, LucyKernel(1), branches, q, 9, LineIntegral{n});
+    for (const LineIntegral method : {exact, LineIntegral::adaptive(), LineIntegral::gauss(1), LineIntegral::gauss(4)}) {
+      const LeafBuffers sigma = splat_contacts(lattice, LucyKernel(1), branches, q, 9, method);
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) {
           double integral = 0;
           for (std::size_t leaf = 0; leaf < sigma.topology()->leaf_count(); ++leaf)
             for (int o = 0; o < leaf_size; ++o) integral += sigma.block(leaf, static_cast<int>(3 * i + j))[o] / 216;
           // Each point of the branch is a kernel that the lattice sums to 1 within 2.4e-5 at c/h = 6.
-          EXPECT_NEAR(integral, -force[i] * l[j], 2.4e-5 * std::abs(force[i] * l[j])) << n;
+          EXPECT_NEAR(integral, -force[i] * l[j], 2.4e-5 * std::abs(force[i] * l[j])) << method.gauss_points;
         }
     }
   }
@@ -217,11 +167,11 @@ TEST(ContactSplatMethods, GaussRulesErrAsTheKernelsBoundsSay) {
   const LeafBuffers reference = splat_contacts(lattice, kernel, branches, {&q, 1}, 1, exact);
   const double bound[] = {1.28e-2, 2.54e-4, 3.80e-5, 1.04e-5, 4.77e-6, 2.08e-6, 1.29e-6, 7.1e-7};
   for (int n = 1; n <= 8; ++n) {
-    const LeafBuffers sums = splat_contacts(lattice, kernel, branches, {&q, 1}, 1, LineIntegral{n});
+    const LeafBuffers sums = splat_contacts(lattice, kernel, branches, {&q, 1}, 1, LineIntegral::gauss(n));
     double worst = 0;
     for (const Coord& voxel : scene.voxels(1.5))
       worst = std::max(worst, std::abs(value_at(sums, voxel, 0) - value_at(reference, voxel, 0)) / lucy_peak(1));
-    EXPECT_LE(worst, bound[n - 1]) << n;
+    EXPECT_LE(worst, bound[n - 1] + 2e-7) << n;  // some roundings of single precision
     EXPECT_GE(worst, 0.9 * bound[n - 1]) << n;
   }
 }
@@ -236,19 +186,22 @@ TEST(ContactSplatMethods, ArmOfNoLengthIsAParticle) {
   const Buckets b = bin_points(lattice, branches.start, 1.3);
   const auto topology = particle_topology(lattice, kernel, b);
   const LeafBuffers particle = splat_particles(lattice, kernel, b, topology, {&q, 1}, 1);
-  for (int n : {0, 3}) {
-    const LeafBuffers sums = splat_contacts(lattice, kernel, branches, {&q, 1}, 1, LineIntegral{n});
+  for (const LineIntegral method : {exact, LineIntegral::adaptive(), LineIntegral::gauss(3)}) {
+    const LeafBuffers sums = splat_contacts(lattice, kernel, branches, {&q, 1}, 1, method);
     ASSERT_EQ(sums.topology()->active_voxel_count(), topology->active_voxel_count());
     for (std::size_t l = 0; l < topology->leaf_count(); ++l)
       for (int o = 0; o < leaf_size; ++o)
-        EXPECT_NEAR(sums.block(l, 0)[o], particle.block(l, 0)[o], 1e-14 * lucy_peak(1.3));
+        EXPECT_NEAR(sums.block(l, 0)[o], particle.block(l, 0)[o],
+                    method == exact ? 1e-14 * lucy_peak(1.3) : 1e-5 * particle.block(l, 0)[o]);
   }
 }
 
 TEST(ContactSplatMethods, NoBranchesGiveNoVoxels) {
-  const LeafBuffers sums = splat_contacts(Lattice(1, {0, 0, 0}), LucyKernel(2), HalfBranches{}, {}, 9, exact);
-  EXPECT_EQ(sums.topology()->leaf_count(), 0u);
-  EXPECT_EQ(sums.channels(), 9);
+  for (const LineIntegral method : {exact, LineIntegral::adaptive(), LineIntegral::gauss(3)}) {
+    const LeafBuffers sums = splat_contacts(Lattice(1, {0, 0, 0}), LucyKernel(2), HalfBranches{}, {}, 9, method);
+    EXPECT_EQ(sums.topology()->leaf_count(), 0u);
+    EXPECT_EQ(sums.channels(), 9);
+  }
 }
 
 TEST(ContactSplatMethods, RefusesWrongNumbersOfValues) {

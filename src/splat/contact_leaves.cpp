@@ -1,0 +1,214 @@
+#include "splat/contact_leaves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include <tbb/enumerable_thread_specific.h>
+
+#include "base/parallel.hpp"
+#include "splat/gather.hpp"
+
+namespace grainvdb {
+
+ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, const BranchSet& set,
+                             std::span<const double> q, int channels)
+    : lattice_(lattice),
+      kernel_(kernel),
+      set_(set),
+      q_(q),
+      channels_(static_cast<std::size_t>(channels)),
+      stride_(channels_ + 3),
+      scale_(channels_, 0.0) {
+  const Buckets& buckets = set.buckets();
+  if (buckets.point.size() > std::numeric_limits<std::int32_t>::max()) throw std::invalid_argument("too many contacts");
+  for (std::size_t n = 0; n < q.size(); ++n) scale_[n % channels_] = std::max(scale_[n % channels_], std::abs(q[n]));
+  for (double& scale : scale_)
+    if (scale == 0) scale = 1;
+
+  for (int n = 0; n <= 8; ++n) rules_.emplace_back(n == 0 ? std::span<const LineNode>{} : set.rule(n));
+  records_.resize(buckets.point.size() * stride_ + Grow<float>::slack);
+  if (set.points_used().size() > 1) points_.resize(buckets.point.size());
+  parallel_for(buckets.point.size(), [&](std::size_t e) {
+    const std::size_t piece = buckets.point[e];
+    const Vec3 arm = set.arm(piece);
+    const double share = set.share(piece);
+    const double* value = q.data() + set.branch(piece) * channels_;
+    float* to = records_.data() + e * stride_;
+    for (int a = 0; a < 3; ++a) to[a] = static_cast<float>(arm[a] / kernel.cutoff());
+    for (std::size_t c = 0; c < channels_; ++c) to[3 + c] = static_cast<float>(share * value[c] / scale_[c]);
+    if (!points_.empty()) points_[e] = static_cast<std::uint8_t>(set.points(piece));
+  });
+}
+
+std::shared_ptr<const Topology> ContactLeaves::topology() const {
+  const double reach = (kernel_.cutoff() + set_.half_arm()) / lattice_.voxel();
+  std::vector<Coord> leaves = leaves_in_reach(lattice_, set_.buckets(), reach);
+  std::vector<LeafMask> masks(leaves.size());
+  tbb::enumerable_thread_specific<ContactWork> work;
+  parallel_for(leaves.size(), [&](std::size_t l) { masks[l] = reached(leaves[l], work.local()); });
+  return std::make_shared<const Topology>(std::move(leaves), std::move(masks));
+}
+
+LeafBuffers ContactLeaves::sums(std::shared_ptr<const Topology> topology) const {
+  LeafBuffers result(std::move(topology), static_cast<int>(channels_));
+  tbb::enumerable_thread_specific<ContactWork> work;
+  parallel_for(result.topology()->leaf_count(), [&](std::size_t l) { run(l, result, work.local()); });
+  return result;
+}
+
+/// Of the branches in work.cells.
+void ContactLeaves::collect(const Coord& leaf, ContactWork& work) const {
+  LeafBranches& to = work.candidates;
+  to.records = records_.data();
+  to.stride = stride_;
+  const double to_cutoff = lattice_.voxel() / kernel_.cutoff();
+  to.voxel = static_cast<float>(to_cutoff);
+  collect_branches(set_.buckets(), work.cells, leaf, to_cutoff, 1 + set_.half_arm() / kernel_.cutoff(), to);
+}
+
+void ContactLeaves::find_cells(const Coord& leaf, ContactWork& work) const {
+  const double reach = (kernel_.cutoff() + set_.half_arm()) / lattice_.voxel();
+  work.cells.clear();
+  for_each_cell(set_.buckets(), leaf, reach, [&](std::size_t cell) { work.cells.push_back(cell); });
+}
+
+/// Candidates of the same rule one after another, each in their order.
+void ContactLeaves::sort_by_rule(ContactWork& work) const {
+  LeafBranches& from = work.candidates;
+  std::array<std::size_t, 10> start{};
+  if (points_.empty()) {
+    work.classes.assign(1, {0, from.size(), &rules_[static_cast<std::size_t>(set_.points_used().front())], half_arm()});
+    return;
+  }
+  for (const std::uint32_t e : from.entry) ++start[points_[e] + 1U];
+  for (std::size_t n = 1; n < start.size(); ++n) start[n] += start[n - 1];
+  work.classes.clear();
+  for (std::size_t n = 0; n < rules_.size(); ++n)
+    if (start[n] < start[n + 1])
+      work.classes.push_back({start[n], start[n + 1], &rules_[n],
+                              static_cast<float>(set_.half_arm(static_cast<int>(n)) / kernel_.cutoff())});
+  LeafBranches& to = work.sorted;
+  to.entry.resize(from.size());
+  using Values = Grow<float> LeafBranches::*;
+  for (const Values column : {&LeafBranches::x, &LeafBranches::y, &LeafBranches::z, &LeafBranches::ax,
+                              &LeafBranches::ay, &LeafBranches::az, &LeafBranches::arm2})
+    (to.*column).room(from.size());
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    const std::size_t at = start[points_[from.entry[k]]]++;
+    to.entry[at] = from.entry[k];
+    for (const Values column : {&LeafBranches::x, &LeafBranches::y, &LeafBranches::z, &LeafBranches::ax,
+                                &LeafBranches::ay, &LeafBranches::az, &LeafBranches::arm2})
+      (to.*column)[at] = (from.*column)[k];
+  }
+  to.records = from.records;
+  to.stride = from.stride;
+  to.voxel = from.voxel;
+  std::swap(from, to);
+}
+
+LeafMask ContactLeaves::reached(const Coord& leaf, ContactWork& work) const {
+  const LeafMask window = LeafWindow(lattice_, leaf).mask();
+  LeafMask mask;
+  // Inside the material the branches of the leaf itself reach all of it.
+  const std::vector<Coord>& cells = set_.buckets().cells;
+  const auto own = std::lower_bound(cells.begin(), cells.end(), leaf);
+  if (own != cells.end() && *own == leaf) {
+    work.cells.assign(1, static_cast<std::size_t>(own - cells.begin()));
+    add_reach(leaf, window, work, mask);
+    if (mask == window) return mask;
+  }
+  find_cells(leaf, work);
+  add_reach(leaf, window, work, mask);
+  return mask;
+}
+
+void ContactLeaves::add_reach(const Coord& leaf, const LeafMask& window, ContactWork& work, LeafMask& mask) const {
+  collect(leaf, work);
+  work.doubtful.clear();
+  reach_of_branches(work.candidates, window, work.scratch, mask, work.doubtful);
+  for (const DoubtfulVoxel& v : work.doubtful)
+    if (!mask.test(v.offset) &&
+        set_.reaches(set_.buckets().point[v.entry], from_middle(voxel_at(leaf, v.offset), v.entry)))
+      mask.set(v.offset);
+}
+
+Vec3 ContactLeaves::from_middle(const Coord& voxel, std::size_t entry) const {
+  const Columns3& index = set_.buckets().index;
+  return {voxel.x - index[0][entry], voxel.y - index[1][entry], voxel.z - index[2][entry]};
+}
+
+void ContactLeaves::run(std::size_t leaf, LeafBuffers& result, ContactWork& work) const {
+  const Topology& topology = *result.topology();
+  const Coord origin = topology.origin(leaf);
+  const LeafMask& mask = topology.mask(leaf);
+  find_cells(origin, work);
+  collect(origin, work);
+  sort_by_rule(work);
+  work.sums.resize(channels_ * leaf_size);
+  work.faint.resize(leaf_blocks * channels_);
+  sum_branches(work.candidates, work.classes, static_cast<int>(channels_), mask, work.scratch, work.sums.data());
+  faint_limits(work.candidates, half_arm(), static_cast<int>(channels_), work.scratch, work.faint.data());
+
+  const double peak = kernel_.value(0);
+  for (std::size_t c = 0; c < channels_; ++c) {
+    const float* sum = work.sums.data() + c * leaf_size;
+    double* to = result.block(leaf, static_cast<int>(c));
+    const double unit = peak * scale_[c];
+    mask.for_each([&](int v) { to[v] = unit * sum[v]; });
+  }
+  const bool certain = std::all_of(work.faint.begin(), work.faint.end(), [](float bar) { return bar == 0; });
+  if (certain) return;
+  // Each channel is judged by itself, so that a sum does not depend on which others are asked for.
+  mask.for_each([&](int v) {
+    const int block = (v >> 8) * 4 + ((v >> 5) & 1) * 2 + ((v >> 2) & 1);
+    const float* bar = work.faint.data() + static_cast<std::size_t>(block) * channels_;
+    work.again.clear();
+    for (std::size_t c = 0; c < channels_; ++c)
+      if (std::abs(work.sums[c * leaf_size + static_cast<std::size_t>(v)]) < bar[c]) work.again.push_back(c);
+    if (work.again.empty()) return;
+    branches_at_voxel(work.candidates, half_arm(), v, work.at_voxel);
+    leave_out_large_sums(v, bar, work);
+    if (!work.again.empty()) sum_in_double(origin, leaf, v, work, result);
+  });
+}
+
+/// Leaves only those channels to be summed again whose sum of |terms| is not surely large: most small sums inside the
+/// material are differences of large terms.
+void ContactLeaves::leave_out_large_sums(int offset, const float* bar, ContactWork& work) const {
+  const LeafBranches& all = work.candidates;
+  const auto at = [&](int n) { return all.voxel * (static_cast<float>(n) - 3.5F); };
+  const float x = at(offset >> 6), y = at((offset >> 3) & 7), z = at(offset & 7);
+  work.certain.assign(channels_, 0.0F);
+  // The middle of the list holds the branches of the nearest cells.
+  const std::size_t count = work.at_voxel.size();
+  for (std::size_t n = 0; n < count && !work.again.empty(); ++n) {
+    const auto k = static_cast<std::size_t>(work.at_voxel[(n + count / 2) % count]);
+    const float dx = x - all.x[k], dy = y - all.y[k], dz = z - all.z[k];
+    const float r = std::sqrt(dx * dx + dy * dy + dz * dz) + 0.5F * std::sqrt(all.arm2[k]);
+    if (!(r < 1)) continue;
+    const float least = (1 - r) * (1 - r) * (1 - r) * (1 + 3 * r);
+    const float* value = all.records + all.entry[k] * all.stride + 3;
+    std::erase_if(work.again, [&](std::size_t c) {
+      work.certain[c] += least * std::abs(value[c]);
+      return work.certain[c] > 2 * bar[c];
+    });
+  }
+}
+
+void ContactLeaves::sum_in_double(const Coord& origin, std::size_t leaf, int offset, ContactWork& work,
+                                  LeafBuffers& result) const {
+  for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] = 0;
+  for (const std::int32_t k : work.at_voxel) {
+    const std::uint32_t e = work.candidates.entry[static_cast<std::size_t>(k)];
+    const std::size_t piece = set_.buckets().point[e];
+    const double w = set_.weight(piece, from_middle(voxel_at(origin, offset), e)) * set_.share(piece);
+    if (!(w > 0)) continue;
+    const double* value = q_.data() + set_.branch(piece) * channels_;
+    for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] += value[c] * w;
+  }
+}
+
+}  // namespace grainvdb

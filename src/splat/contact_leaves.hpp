@@ -1,0 +1,59 @@
+#pragma once
+/// The gather of branches leaf by leaf: which voxels they reach, and their sums in single precision.
+#include <span>
+#include <vector>
+
+#include "grainvdb/leaf_buffers.hpp"
+#include "splat/branch_set.hpp"
+#include "splat/contact_bricks.hpp"
+
+namespace grainvdb {
+
+/// What a thread needs for one leaf, reused from leaf to leaf.
+struct ContactWork {
+  LeafBranches candidates, sorted;
+  std::vector<std::size_t> cells;
+  std::vector<BranchClass> classes;
+  std::vector<DoubtfulVoxel> doubtful;
+  std::vector<std::int32_t> at_voxel;
+  std::vector<std::size_t> again;  // channels of a voxel to be summed in double
+  std::vector<float> sums, faint, certain;
+  BranchScratch scratch;
+};
+
+class ContactLeaves {
+ public:
+  ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, const BranchSet& set, std::span<const double> q,
+                int channels);
+
+  /// The voxels of the stored period within one cutoff of a branch, exactly.
+  std::shared_ptr<const Topology> topology() const;
+
+  /// The sums by the rules of the set.
+  LeafBuffers sums(std::shared_ptr<const Topology> topology) const;
+
+ private:
+  void find_cells(const Coord& leaf, ContactWork& work) const;
+  void collect(const Coord& leaf, ContactWork& work) const;
+  void sort_by_rule(ContactWork& work) const;
+  LeafMask reached(const Coord& leaf, ContactWork& work) const;
+  void add_reach(const Coord& leaf, const LeafMask& window, ContactWork& work, LeafMask& mask) const;
+  void run(std::size_t leaf, LeafBuffers& result, ContactWork& work) const;
+  void leave_out_large_sums(int offset, const float* bar, ContactWork& work) const;
+  void sum_in_double(const Coord& origin, std::size_t leaf, int offset, ContactWork& work, LeafBuffers& result) const;
+  Vec3 from_middle(const Coord& voxel, std::size_t entry) const;
+  float half_arm() const { return static_cast<float>(set_.half_arm() / kernel_.cutoff()); }
+
+  const Lattice& lattice_;
+  const LucyKernel& kernel_;
+  const BranchSet& set_;
+  std::span<const double> q_;
+  std::size_t channels_;
+  std::size_t stride_;
+  std::vector<double> scale_;         // largest |q| of each channel: keeps single precision in its range
+  std::vector<float> records_;        // [entry][arm, values]: 4 (3 + channels) bytes per entry
+  std::vector<std::uint8_t> points_;  // of each entry; empty when all take the same
+  std::vector<BranchRule> rules_;     // by number of points
+};
+
+}  // namespace grainvdb
