@@ -52,6 +52,8 @@ const DenseSums::Tolerance with_single_positions{
 // What the library promises, and the rounding of the grids.
 constexpr DenseSums::Tolerance promised{.relative = 1e-5 + 0x1p-24};
 
+constexpr int channel_counts[] = {1, 4, 5, 8, 9, 14};
+
 using Splat = std::function<Grids(const Case&, std::span<const double>, int)>;
 
 Grids naive(const Case& c, std::span<const double> q, int channels) {
@@ -66,10 +68,11 @@ Grids library(const Case& c, std::span<const double> q, int channels) {
   return splat_to_grids(c.setting, c.scene, q, channels);
 }
 
-bool check(const std::string& name, const Case& c, const Splat& splat, const DenseSums::Tolerance& tolerance) {
+bool check(const std::string& name, const Case& c, const Splat& splat, const DenseSums::Tolerance& tolerance,
+           int channels) {
   return check_once(name + " on " + std::to_string(c.scene.size()) + " particles", [&] {
-    const auto q = c.q(all_channels);
-    return sum_particles(c.scene, c.h, q, all_channels).disagreement(splat(c, q, all_channels), tolerance);
+    const auto q = c.q(channels);
+    return sum_particles(c.scene, c.h, q, channels).disagreement(splat(c, q, channels), tolerance);
   });
 }
 
@@ -86,7 +89,7 @@ void register_whole(const Sizes& sizes, double h, const std::string& side, const
   const std::string name = "particles/" + name_of(h) + "/" + side;
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
     const Case& c = case_of(sizes, h);
-    if (!check(name, c, splat, tolerance)) return state.SkipWithError("the results disagree");
+    if (!check(name, c, splat, tolerance, all_channels)) return state.SkipWithError("the results disagree");
     const auto q = c.q(all_channels);
     for (auto _ : state) {
       Grids grids = splat(c, q, all_channels);
@@ -97,8 +100,10 @@ void register_whole(const Sizes& sizes, double h, const std::string& side, const
 }
 
 void register_channels(const Sizes& sizes, int channels) {
-  benchmark::RegisterBenchmark(("channels/" + std::to_string(channels)).c_str(), [=](benchmark::State& state) {
+  const std::string name = "channels/" + std::to_string(channels);
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
     const Case& c = case_of(sizes, 0.5);
+    if (!check(name, c, library, promised, channels)) return state.SkipWithError("the results disagree");
     const auto q = c.q(channels);
     for (auto _ : state) {
       Grids grids = library(c, q, channels);
@@ -134,16 +139,18 @@ void register_splat(const Sizes& sizes) {
     register_whole(sizes, h, "grainvdb", library, promised);
   }
   for (const double h : {0.5, 1.0}) register_kernel(sizes, h);
-  for (const int channels : {1, 4, 5, 8, 9, 14}) register_channels(sizes, channels);
+  for (const int channels : channel_counts) register_channels(sizes, channels);
 }
 
 void check_splat(const Sizes& sizes) {
   for (const double h : {0.5, 1.0}) {
     const Case& c = case_of(sizes, h);
-    check("particles/" + name_of(h) + "/naive", c, naive, in_single);
-    check("particles/" + name_of(h) + "/rasterize", c, rasterize, with_single_positions);
-    check("particles/" + name_of(h) + "/grainvdb", c, library, promised);
+    check("particles/" + name_of(h) + "/naive", c, naive, in_single, all_channels);
+    check("particles/" + name_of(h) + "/rasterize", c, rasterize, with_single_positions, all_channels);
+    check("particles/" + name_of(h) + "/grainvdb", c, library, promised, all_channels);
   }
+  for (const int channels : channel_counts)
+    check("channels/" + std::to_string(channels), case_of(sizes, 0.5), library, promised, channels);
 }
 
 }  // namespace grainvdb::bench
