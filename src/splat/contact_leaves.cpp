@@ -13,34 +13,34 @@
 
 namespace grainvdb {
 
-ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, const BranchSet& set,
-                             std::span<const double> q, int channels)
+ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, const BranchSet& set)
     : lattice_(lattice),
       kernel_(kernel),
       set_(set),
-      q_(q),
-      channels_(static_cast<std::size_t>(channels)),
+      channels_(set.channels()),
       stride_(channels_ + 3),
       scale_(channels_, 0.0) {
   const Buckets& buckets = set.buckets();
   if (buckets.point.size() > std::numeric_limits<std::int32_t>::max()) throw std::invalid_argument("too many contacts");
-  for (std::size_t n = 0; n < q.size(); ++n) scale_[n % channels_] = std::max(scale_[n % channels_], std::abs(q[n]));
-  for (double& scale : scale_)
-    if (scale == 0) scale = 1;
-
   for (int n = 0; n <= 8; ++n) rules_.emplace_back(n == 0 ? std::span<const LineNode>{} : set.rule(n));
+  find_scales();
   records_.resize(buckets.point.size() * stride_ + Grow<float>::slack);
   if (set.points_used().size() > 1) points_.resize(buckets.point.size());
   parallel_for(buckets.point.size(), [&](std::size_t e) {
     const std::size_t piece = buckets.point[e];
     const Vec3 arm = set.arm(piece);
-    const double share = set.share(piece);
-    const double* value = q.data() + set.branch(piece) * channels_;
     float* to = records_.data() + e * stride_;
-    for (int a = 0; a < 3; ++a) to[a] = static_cast<float>(arm[a] / kernel.cutoff());
-    for (std::size_t c = 0; c < channels_; ++c) to[3 + c] = static_cast<float>(share * value[c] / scale_[c]);
+    for (std::size_t a = 0; a < 3; ++a) to[a] = static_cast<float>(arm[a] / kernel.cutoff());
+    for (std::size_t c = 0; c < channels_; ++c) to[3 + c] = static_cast<float>(set.value(piece, c) / scale_[c]);
     if (!points_.empty()) points_[e] = static_cast<std::uint8_t>(set.points(piece));
   });
+}
+
+void ContactLeaves::find_scales() {
+  for (const std::uint32_t piece : set_.buckets().point)
+    for (std::size_t c = 0; c < channels_; ++c) scale_[c] = std::max(scale_[c], std::abs(set_.value(piece, c)));
+  for (double& scale : scale_)
+    if (scale == 0) scale = 1;
 }
 
 std::shared_ptr<const Topology> ContactLeaves::topology() const {
@@ -204,10 +204,9 @@ void ContactLeaves::sum_in_double(const Coord& origin, std::size_t leaf, int off
   for (const std::int32_t k : work.at_voxel) {
     const std::uint32_t e = work.candidates.entry[static_cast<std::size_t>(k)];
     const std::size_t piece = set_.buckets().point[e];
-    const double w = set_.weight(piece, from_middle(voxel_at(origin, offset), e)) * set_.share(piece);
+    const double w = set_.weight(piece, from_middle(voxel_at(origin, offset), e));
     if (!(w > 0)) continue;
-    const double* value = q_.data() + set_.branch(piece) * channels_;
-    for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] += value[c] * w;
+    for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] += set_.value(piece, c) * w;
   }
 }
 
