@@ -150,7 +150,7 @@ void ContactLeaves::run(std::size_t leaf, LeafBuffers& result, ContactWork& work
   work.sums.resize(channels_ * leaf_size);
   work.faint.resize(leaf_blocks * channels_);
   sum_branches(work.candidates, work.classes, static_cast<int>(channels_), mask, work.scratch, work.sums.data());
-  faint_limits(work.candidates, half_arm(), static_cast<int>(channels_), work.scratch, work.faint.data());
+  faint_limits(work.candidates, static_cast<int>(channels_), work.scratch, work.faint.data());
 
   const double peak = kernel_.value(0);
   for (std::size_t c = 0; c < channels_; ++c) {
@@ -169,14 +169,14 @@ void ContactLeaves::run(std::size_t leaf, LeafBuffers& result, ContactWork& work
     for (std::size_t c = 0; c < channels_; ++c)
       if (std::abs(work.sums[c * leaf_size + static_cast<std::size_t>(v)]) < bar[c]) work.again.push_back(c);
     if (work.again.empty()) return;
-    branches_at_voxel(work.candidates, half_arm(), v, work.at_voxel);
+    branches_at_voxel(work.candidates, v, work.at_voxel);
     leave_out_large_sums(v, bar, work);
     if (!work.again.empty()) sum_in_double(origin, leaf, v, work, result);
   });
 }
 
-/// Leaves only those channels to be summed again whose sum of |terms| is not surely large: most small sums inside the
-/// material are differences of large terms.
+/// Leaves only those channels to be summed again whose sum of |terms|, estimated from the middles of the branches, is
+/// not large either: most small sums inside the material are differences of large terms.
 void ContactLeaves::leave_out_large_sums(int offset, const float* bar, ContactWork& work) const {
   const LeafBranches& all = work.candidates;
   const auto at = [&](int n) { return all.voxel * (static_cast<float>(n) - 3.5F); };
@@ -187,12 +187,12 @@ void ContactLeaves::leave_out_large_sums(int offset, const float* bar, ContactWo
   for (std::size_t n = 0; n < count && !work.again.empty(); ++n) {
     const auto k = static_cast<std::size_t>(work.at_voxel[(n + count / 2) % count]);
     const float dx = x - all.x[k], dy = y - all.y[k], dz = z - all.z[k];
-    const float r = std::sqrt(dx * dx + dy * dy + dz * dz) + 0.5F * std::sqrt(all.arm2[k]);
+    const float r = std::sqrt(dx * dx + dy * dy + dz * dz);
     if (!(r < 1)) continue;
-    const float least = (1 - r) * (1 - r) * (1 - r) * (1 + 3 * r);
+    const float weight = (1 - r) * (1 - r) * (1 - r) * (1 + 3 * r);
     const float* value = all.records + all.entry[k] * all.stride + 3;
     std::erase_if(work.again, [&](std::size_t c) {
-      work.certain[c] += least * std::abs(value[c]);
+      work.certain[c] += weight * std::abs(value[c]);
       return work.certain[c] > 2 * bar[c];
     });
   }

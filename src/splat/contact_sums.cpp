@@ -73,10 +73,9 @@ HWY_NOINLINE void weigh(const LeafBranches& b, const std::int32_t* HWY_RESTRICT 
   }
 }
 
-using Weigh = void (*)(const LeafBranches&, const std::int32_t*, std::size_t, Voxels, const BranchRule&, float,
-                       float*);
-constexpr Weigh weigh_of[9] = {nullptr,         weigh<0, true>,  weigh<1, false>, weigh<1, true>, weigh<2, false>,
-                               weigh<2, true>,  weigh<3, false>, weigh<3, true>,  weigh<4, false>};
+using Weigh = void (*)(const LeafBranches&, const std::int32_t*, std::size_t, Voxels, const BranchRule&, float, float*);
+constexpr Weigh weigh_of[9] = {nullptr,        weigh<0, true>,  weigh<1, false>, weigh<1, true>, weigh<2, false>,
+                               weigh<2, true>, weigh<3, false>, weigh<3, true>,  weigh<4, false>};
 
 /// sums[channel][lane] += Σ_k weights[k][lane] q[entry[chosen[k]]][channel], all sums in registers.
 template <int channels>
@@ -159,7 +158,7 @@ void SumBranches(const LeafBranches& leaf, std::span<const BranchClass> classes,
 // |terms| is less than this part of W(0) times the largest |q| around, they may have too much of a share in it.
 constexpr float faint_part = 3e-3F;
 
-void FaintLimits(const LeafBranches& leaf, float half_arm, int channels, BranchScratch& scratch, float* faint) {
+void FaintLimits(const LeafBranches& leaf, int channels, BranchScratch& scratch, float* faint) {
   const auto width = static_cast<std::size_t>(channels);
   scratch.chosen.resize(leaf.size() + 2 * lanes);
   float* const largest = scratch.sums.room(2 * width + 2 * lanes);
@@ -170,9 +169,9 @@ void FaintLimits(const LeafBranches& leaf, float half_arm, int channels, BranchS
     for (std::size_t k = 0; k < leaf.size(); ++k) most = hn::Max(most, hn::Abs(hn::LoadU(d, values(k) + c)));
     hn::StoreU(most, d, largest + c);
   }
-  // The sum of |terms| at any voxel of a block, whatever their signs, is at least that of the branches near its middle,
-  // each weighed as far from it as the voxels go.
-  const float farther = half_arm + 0.5F * leaf.voxel * (block - 1) * std::sqrt(3.0F);
+  // The sum of |terms| at any voxel of a block, whatever their signs, is about that of the branches near its middle at
+  // least, each weighed as far from it as the voxels go.
+  const float farther = 0.5F * leaf.voxel * (block - 1) * std::sqrt(3.0F);
   for (int b = 0; b < leaf_blocks; ++b) {
     CentredBox box = centres_of({b / 4 * block, b / 2 % 2 * block, b % 2 * block}, block, block, block, leaf.voxel);
     std::fill_n(box.half, 3, 0.0F);
@@ -216,8 +215,8 @@ void sum_branches(const LeafBranches& leaf, std::span<const BranchClass> classes
                   BranchScratch& scratch, float* sums) {
   HWY_DYNAMIC_DISPATCH(SumBranches)(leaf, classes, channels, mask, scratch, sums);
 }
-void faint_limits(const LeafBranches& leaf, float half_arm, int channels, BranchScratch& scratch, float* faint) {
-  HWY_DYNAMIC_DISPATCH(FaintLimits)(leaf, half_arm, channels, scratch, faint);
+void faint_limits(const LeafBranches& leaf, int channels, BranchScratch& scratch, float* faint) {
+  HWY_DYNAMIC_DISPATCH(FaintLimits)(leaf, channels, scratch, faint);
 }
 }  // namespace grainvdb
 #endif
