@@ -111,8 +111,8 @@ double LucyKernel::line_integral_adaptive(const Vec3& p, const Vec3& a) const {
   const Vec3 part{share * a[0], share * a[1], share * a[2]};
   double sum = 0;
   for (int k = 0; k < division.parts; ++k)
-    sum += line_integral({p[0] + k * part[0], p[1] + k * part[1], p[2] + k * part[2]}, part,
-                         lucy_rule(division.points));
+    sum +=
+        line_integral({p[0] + k * part[0], p[1] + k * part[1], p[2] + k * part[2]}, part, lucy_rule(division.points));
   return share * sum;
 }
 

@@ -42,11 +42,12 @@ void register_contact_stress(StageRegistry& registry) {
   s.equation = "-sum F_ab,i a_ab,j int_0^1 W(x - x_a + s a_ab) ds  (8)";
   std::vector<std::string> methods{"adaptive", "exact"};
   for (int n = 1; n <= 8; ++n) methods.push_back("gauss" + std::to_string(n));
-  s.options = {{.name = "line_integral",
-                .default_value = std::string("adaptive"),
-                .help = "mean of W along a half branch: as few points as keep its error below 3e-5 W(0), closed form in double, "
-                        "or n-point Gauss-Legendre (gauss1 ... gauss8)",
-                .choices = methods}};
+  s.options = {
+      {.name = "line_integral",
+       .default_value = std::string("adaptive"),
+       .help = "mean of W along a half branch: as few points as keep its error below 3e-5 W(0), closed form in double, "
+               "or n-point Gauss-Legendre (gauss1 ... gauss8)",
+       .choices = methods}};
   s.needs = [](const StageSettings& settings) { return StageNeeds{{}, {contact_stress_moment(settings)}}; };
   s.compute = [](const StageInput& in, SparseField& out) {
     write_moment(in, *contact_stress_moment(in.settings()), out);

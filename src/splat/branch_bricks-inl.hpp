@@ -78,7 +78,9 @@ HWY_INLINE std::size_t pick_branches(const LeafBranches& leaf, std::size_t begin
 
 /// The box of the centres of nx × ny × nz voxels.
 HWY_INLINE CentredBox centres_of(const VoxelBox& first, int nx, int ny, int nz, float h) {
-  const auto middle = [h](int at, int n) { return h * (static_cast<float>(at) + 0.5F * static_cast<float>(n - 1) - 3.5F); };
+  const auto middle = [h](int at, int n) {
+    return h * (static_cast<float>(at) + 0.5F * static_cast<float>(n - 1) - 3.5F);
+  };
   const auto half = [h](int n) { return 0.5F * h * static_cast<float>(n - 1); };
   return {{middle(first.x, nx), middle(first.y, ny), middle(first.z, nz)}, {half(nx), half(ny), half(nz)}};
 }

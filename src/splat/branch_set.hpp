@@ -1,5 +1,5 @@
 #pragma once
-/// The half branches of a frame as the splat sums them: long ones divided, all of them in buckets about their middles.
+/// The half branches of a frame as the splat sums them: cut into straight pieces, in buckets about their middles.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,22 +13,31 @@
 
 namespace grainvdb {
 
-/// Straight pieces of half branches: all of a branch, or an equal part of one that no rule can integrate in one piece.
+/// Values of half branches, laid out [branch][channel].
+struct BranchValues {
+  std::span<const double> q;
+  std::size_t channels = 1;
+  const double* of(std::size_t branch) const { return q.data() + branch * channels; }
+};
+
+/// A piece is a half branch; or an equal part of one that no rule can integrate at once; or both halves of a contact,
+/// where its point lies on the line of centres and the values of the halves are as their lengths: then the whole branch
+/// takes fewer points than its halves. Whole and parted branches occur with the adaptive method only.
 class BranchSet {
  public:
-  /// `branches` must outlive the set. Throws std::invalid_argument when an arm is longer than 1e6 cutoffs.
-  BranchSet(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches, LineIntegral method);
+  /// `branches` and `values` must outlive the set. Throws std::invalid_argument when an arm is longer than 1e6 cutoffs.
+  BranchSet(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches, const BranchValues& values,
+            LineIntegral method);
 
   /// The middles of the pieces; a bucket's point is a piece.
   const Buckets& buckets() const { return buckets_; }
+  std::size_t channels() const { return values_.channels; }
 
-  /// Which half branch a piece belongs to, and its share in it.
-  std::size_t branch(std::size_t piece) const { return source_.empty() ? piece : source_[piece]; }
-  double share(std::size_t piece) const { return source_.empty() ? 1.0 : share_[source_[piece]]; }
   Vec3 arm(std::size_t piece) const;
+  double value(std::size_t piece, std::size_t channel) const;
 
   /// The points of the rule that a piece takes, 0 for the exact integral.
-  int points(std::size_t piece) const { return points_.empty() ? only_points_ : points_[branch(piece)]; }
+  int points(std::size_t piece) const { return plans_.empty() ? only_points_ : plans_[branch(piece)].points; }
   /// The numbers of points that occur, ascending.
   const std::vector<int>& points_used() const { return points_used_; }
   std::span<const LineNode> rule(int points) const;
@@ -38,23 +47,31 @@ class BranchSet {
 
   /// The integral over a piece at index distance d (in voxels) from its middle.
   double weight(std::size_t piece, const Vec3& d) const;
-  /// Whether it is positive: the piece has a point within one cutoff.
+  /// Whether the half branches of a piece have a point within one cutoff of it.
   bool reaches(std::size_t piece, const Vec3& d) const;
 
  private:
-  void divide();
+  struct Plan {
+    std::uint8_t points = 0;
+    bool whole = false;  ///< joined with the next half branch
+    std::uint32_t parts = 1;
+  };
+  void plan();
+  double whole_length(std::size_t branch) const;
   Columns3 middles() const;
-  double length(std::size_t branch) const;
+  std::size_t branch(std::size_t piece) const { return source_.empty() ? piece : source_[piece]; }
+  Plan plan_of(std::size_t piece) const { return plans_.empty() ? Plan{} : plans_[branch(piece)]; }
+  Vec3 half(std::size_t branch) const;
   Vec3 from_start(const Vec3& d, const Vec3& arm) const;
 
+  const Lattice& lattice_;
   const LucyKernel& kernel_;
   const HalfBranches& branches_;
+  BranchValues values_;
   LineIntegral method_;
-  double voxel_;
-  std::vector<std::uint32_t> source_;  // of each piece; empty when no branch is divided
-  std::vector<double> share_;          // of each branch's pieces, likewise
   int only_points_ = 0;
-  std::vector<std::uint8_t> points_;  // of each branch; empty when all take the same
+  std::vector<Plan> plans_;            // of each branch, for the adaptive method
+  std::vector<std::uint32_t> source_;  // the branch of each piece; empty when pieces are half branches
   std::vector<int> points_used_;
   std::array<double, 9> half_arm_{};
   double longest_half_arm_ = 0;

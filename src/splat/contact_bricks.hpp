@@ -65,11 +65,11 @@ struct DoubtfulVoxel {
 void reach_of_branches(const LeafBranches& leaf, const LeafMask& window, BranchScratch& scratch, LeafMask& mask,
                        std::vector<DoubtfulVoxel>& doubtful);
 
-/// The candidates whose middle is within 1 + half_arm of a voxel, in their order.
-void branches_at_voxel(const LeafBranches& leaf, float half_arm, int offset, std::vector<std::int32_t>& out);
+/// The candidates that may lie within 1 of a voxel, by the precision of the positions, in their order.
+void branches_at_voxel(const LeafBranches& leaf, int offset, std::vector<std::int32_t>& out);
 
-/// sums[channel][offset] = Σ q Σ_nodes weight (1-r)³(1+3r), for the bricks with a voxel of `mask`; other voxels are left
-/// alone.
+/// sums[channel][offset] = Σ q Σ_nodes weight (1-r)³(1+3r), for the bricks with a voxel of `mask`; other voxels are
+/// left alone.
 void sum_branches(const LeafBranches& leaf, std::span<const BranchClass> classes, int channels, const LeafMask& mask,
                   BranchScratch& scratch, float* sums);
 
@@ -78,6 +78,6 @@ inline constexpr int leaf_blocks = 8;
 
 /// Sums whose magnitude is below faint[block][channel] may have lost their accuracy to rounding at the rims of the
 /// supports; 0 where there are none.
-void faint_limits(const LeafBranches& leaf, float half_arm, int channels, BranchScratch& scratch, float* faint);
+void faint_limits(const LeafBranches& leaf, int channels, BranchScratch& scratch, float* faint);
 
 }  // namespace grainvdb

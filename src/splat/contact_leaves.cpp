@@ -13,34 +13,34 @@
 
 namespace grainvdb {
 
-ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, const BranchSet& set,
-                             std::span<const double> q, int channels)
+ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, const BranchSet& set)
     : lattice_(lattice),
       kernel_(kernel),
       set_(set),
-      q_(q),
-      channels_(static_cast<std::size_t>(channels)),
+      channels_(set.channels()),
       stride_(channels_ + 3),
       scale_(channels_, 0.0) {
   const Buckets& buckets = set.buckets();
   if (buckets.point.size() > std::numeric_limits<std::int32_t>::max()) throw std::invalid_argument("too many contacts");
-  for (std::size_t n = 0; n < q.size(); ++n) scale_[n % channels_] = std::max(scale_[n % channels_], std::abs(q[n]));
-  for (double& scale : scale_)
-    if (scale == 0) scale = 1;
-
   for (int n = 0; n <= 8; ++n) rules_.emplace_back(n == 0 ? std::span<const LineNode>{} : set.rule(n));
+  find_scales();
   records_.resize(buckets.point.size() * stride_ + Grow<float>::slack);
   if (set.points_used().size() > 1) points_.resize(buckets.point.size());
   parallel_for(buckets.point.size(), [&](std::size_t e) {
     const std::size_t piece = buckets.point[e];
     const Vec3 arm = set.arm(piece);
-    const double share = set.share(piece);
-    const double* value = q.data() + set.branch(piece) * channels_;
     float* to = records_.data() + e * stride_;
-    for (int a = 0; a < 3; ++a) to[a] = static_cast<float>(arm[a] / kernel.cutoff());
-    for (std::size_t c = 0; c < channels_; ++c) to[3 + c] = static_cast<float>(share * value[c] / scale_[c]);
+    for (std::size_t a = 0; a < 3; ++a) to[a] = static_cast<float>(arm[a] / kernel.cutoff());
+    for (std::size_t c = 0; c < channels_; ++c) to[3 + c] = static_cast<float>(set.value(piece, c) / scale_[c]);
     if (!points_.empty()) points_[e] = static_cast<std::uint8_t>(set.points(piece));
   });
+}
+
+void ContactLeaves::find_scales() {
+  for (const std::uint32_t piece : set_.buckets().point)
+    for (std::size_t c = 0; c < channels_; ++c) scale_[c] = std::max(scale_[c], std::abs(set_.value(piece, c)));
+  for (double& scale : scale_)
+    if (scale == 0) scale = 1;
 }
 
 std::shared_ptr<const Topology> ContactLeaves::topology() const {
@@ -150,7 +150,7 @@ void ContactLeaves::run(std::size_t leaf, LeafBuffers& result, ContactWork& work
   work.sums.resize(channels_ * leaf_size);
   work.faint.resize(leaf_blocks * channels_);
   sum_branches(work.candidates, work.classes, static_cast<int>(channels_), mask, work.scratch, work.sums.data());
-  faint_limits(work.candidates, half_arm(), static_cast<int>(channels_), work.scratch, work.faint.data());
+  faint_limits(work.candidates, static_cast<int>(channels_), work.scratch, work.faint.data());
 
   const double peak = kernel_.value(0);
   for (std::size_t c = 0; c < channels_; ++c) {
@@ -169,14 +169,14 @@ void ContactLeaves::run(std::size_t leaf, LeafBuffers& result, ContactWork& work
     for (std::size_t c = 0; c < channels_; ++c)
       if (std::abs(work.sums[c * leaf_size + static_cast<std::size_t>(v)]) < bar[c]) work.again.push_back(c);
     if (work.again.empty()) return;
-    branches_at_voxel(work.candidates, half_arm(), v, work.at_voxel);
+    branches_at_voxel(work.candidates, v, work.at_voxel);
     leave_out_large_sums(v, bar, work);
     if (!work.again.empty()) sum_in_double(origin, leaf, v, work, result);
   });
 }
 
-/// Leaves only those channels to be summed again whose sum of |terms| is not surely large: most small sums inside the
-/// material are differences of large terms.
+/// Leaves only those channels to be summed again whose sum of |terms|, estimated from the middles of the branches, is
+/// not large either: most small sums inside the material are differences of large terms.
 void ContactLeaves::leave_out_large_sums(int offset, const float* bar, ContactWork& work) const {
   const LeafBranches& all = work.candidates;
   const auto at = [&](int n) { return all.voxel * (static_cast<float>(n) - 3.5F); };
@@ -187,12 +187,12 @@ void ContactLeaves::leave_out_large_sums(int offset, const float* bar, ContactWo
   for (std::size_t n = 0; n < count && !work.again.empty(); ++n) {
     const auto k = static_cast<std::size_t>(work.at_voxel[(n + count / 2) % count]);
     const float dx = x - all.x[k], dy = y - all.y[k], dz = z - all.z[k];
-    const float r = std::sqrt(dx * dx + dy * dy + dz * dz) + 0.5F * std::sqrt(all.arm2[k]);
+    const float r = std::sqrt(dx * dx + dy * dy + dz * dz);
     if (!(r < 1)) continue;
-    const float least = (1 - r) * (1 - r) * (1 - r) * (1 + 3 * r);
+    const float weight = (1 - r) * (1 - r) * (1 - r) * (1 + 3 * r);
     const float* value = all.records + all.entry[k] * all.stride + 3;
     std::erase_if(work.again, [&](std::size_t c) {
-      work.certain[c] += least * std::abs(value[c]);
+      work.certain[c] += weight * std::abs(value[c]);
       return work.certain[c] > 2 * bar[c];
     });
   }
@@ -204,10 +204,9 @@ void ContactLeaves::sum_in_double(const Coord& origin, std::size_t leaf, int off
   for (const std::int32_t k : work.at_voxel) {
     const std::uint32_t e = work.candidates.entry[static_cast<std::size_t>(k)];
     const std::size_t piece = set_.buckets().point[e];
-    const double w = set_.weight(piece, from_middle(voxel_at(origin, offset), e)) * set_.share(piece);
+    const double w = set_.weight(piece, from_middle(voxel_at(origin, offset), e));
     if (!(w > 0)) continue;
-    const double* value = q_.data() + set_.branch(piece) * channels_;
-    for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] += value[c] * w;
+    for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] += set_.value(piece, c) * w;
   }
 }
 

@@ -23,8 +23,7 @@ struct ContactWork {
 
 class ContactLeaves {
  public:
-  ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, const BranchSet& set, std::span<const double> q,
-                int channels);
+  ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, const BranchSet& set);
 
   /// The voxels of the stored period within one cutoff of a branch, exactly.
   std::shared_ptr<const Topology> topology() const;
@@ -33,6 +32,7 @@ class ContactLeaves {
   LeafBuffers sums(std::shared_ptr<const Topology> topology) const;
 
  private:
+  void find_scales();
   void find_cells(const Coord& leaf, ContactWork& work) const;
   void collect(const Coord& leaf, ContactWork& work) const;
   void sort_by_rule(ContactWork& work) const;
@@ -47,7 +47,6 @@ class ContactLeaves {
   const Lattice& lattice_;
   const LucyKernel& kernel_;
   const BranchSet& set_;
-  std::span<const double> q_;
   std::size_t channels_;
   std::size_t stride_;
   std::vector<double> scale_;         // largest |q| of each channel: keeps single precision in its range

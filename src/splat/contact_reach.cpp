@@ -60,8 +60,8 @@ HWY_INLINE V distance2(const LeafBranches& b, std::size_t i, const Voxels& at) {
   const V dx = hn::Sub(at.x, hn::Set(d, b.x[i])), dy = hn::Sub(at.y, hn::Set(d, b.y[i])),
           dz = hn::Sub(at.z, hn::Set(d, b.z[i]));
   const V half = hn::Set(d, 0.5F);
-  const V foot = hn::Mul(hn::MulAdd(dx, ax, hn::MulAdd(dy, ay, hn::Mul(dz, az))),
-                         hn::Set(d, b.arm2[i] > 0 ? 1 / b.arm2[i] : 0));
+  const V foot =
+      hn::Mul(hn::MulAdd(dx, ax, hn::MulAdd(dy, ay, hn::Mul(dz, az))), hn::Set(d, b.arm2[i] > 0 ? 1 / b.arm2[i] : 0));
   const V s = hn::Max(hn::Min(foot, half), hn::Neg(half));
   const V ex = hn::NegMulAdd(s, ax, dx), ey = hn::NegMulAdd(s, ay, dy), ez = hn::NegMulAdd(s, az, dz);
   return hn::MulAdd(ex, ex, hn::MulAdd(ey, ey, hn::Mul(ez, ez)));
@@ -97,10 +97,11 @@ void ReachOfBranches(const LeafBranches& leaf, const LeafMask& window, BranchScr
   });
 }
 
-void BranchesAtVoxel(const LeafBranches& leaf, float half_arm, int offset, std::vector<std::int32_t>& out) {
+void BranchesAtVoxel(const LeafBranches& leaf, int offset, std::vector<std::int32_t>& out) {
   const VoxelBox voxel{offset >> 6, (offset >> 3) & 7, offset & 7, 1};
   out.resize(leaf.size() + 2 * lanes);
-  out.resize(pick_middles(leaf, centres_of(voxel, 1, 1, 1, leaf.voxel), 1 + half_arm + touch, out.data()));
+  // For a single point the bound of pick_branches is nearly the distance from the branch.
+  out.resize(pick_branches(leaf, 0, leaf.size(), centres_of(voxel, 1, 1, 1, leaf.voxel), out.data()));
 }
 
 }  // namespace
@@ -131,8 +132,8 @@ void reach_of_branches(const LeafBranches& leaf, const LeafMask& window, BranchS
                        std::vector<DoubtfulVoxel>& doubtful) {
   HWY_DYNAMIC_DISPATCH(ReachOfBranches)(leaf, window, scratch, mask, doubtful);
 }
-void branches_at_voxel(const LeafBranches& leaf, float half_arm, int offset, std::vector<std::int32_t>& out) {
-  HWY_DYNAMIC_DISPATCH(BranchesAtVoxel)(leaf, half_arm, offset, out);
+void branches_at_voxel(const LeafBranches& leaf, int offset, std::vector<std::int32_t>& out) {
+  HWY_DYNAMIC_DISPATCH(BranchesAtVoxel)(leaf, offset, out);
 }
 }  // namespace grainvdb
 #endif

@@ -73,16 +73,18 @@ HWY_NOINLINE void weigh(const LeafBranches& b, const std::int32_t* HWY_RESTRICT 
   }
 }
 
-using Weigh = void (*)(const LeafBranches&, const std::int32_t*, std::size_t, Voxels, const BranchRule&, float,
-                       float*);
-constexpr Weigh weigh_of[9] = {nullptr,         weigh<0, true>,  weigh<1, false>, weigh<1, true>, weigh<2, false>,
-                               weigh<2, true>,  weigh<3, false>, weigh<3, true>,  weigh<4, false>};
+using Weigh = void (*)(const LeafBranches&, const std::int32_t*, std::size_t, Voxels, const BranchRule&, float, float*);
+constexpr Weigh weigh_of[9] = {nullptr,        weigh<0, true>,  weigh<1, false>, weigh<1, true>, weigh<2, false>,
+                               weigh<2, true>, weigh<3, false>, weigh<3, true>,  weigh<4, false>};
 
 /// sums[channel][lane] += Σ_k weights[k][lane] q[entry[chosen[k]]][channel], all sums in registers.
 template <int channels>
 HWY_NOINLINE void add_channels(const float* HWY_RESTRICT weights, const float* HWY_RESTRICT q, std::size_t stride,
                                const std::uint32_t* HWY_RESTRICT entry, const std::int32_t* HWY_RESTRICT chosen,
                                std::size_t count, float* HWY_RESTRICT sums) {
+  // Loads limit the speed; see sum_channels.
+  constexpr int permuted = lanes == 16 && channels <= 16 ? (channels / 3 < 4 ? channels / 3 : 4) : 0;
+  constexpr int loaded = channels - permuted;
   V s[channels];
 #pragma GCC unroll 32
   for (int c = 0; c < channels; ++c) s[c] = hn::Load(d, sums + c * lanes);
@@ -90,7 +92,13 @@ HWY_NOINLINE void add_channels(const float* HWY_RESTRICT weights, const float* H
     const V w = hn::Load(d, weights + k * lanes);
     const float* HWY_RESTRICT v = q + entry[static_cast<std::size_t>(chosen[k])] * stride;
 #pragma GCC unroll 32
-    for (int c = 0; c < channels; ++c) s[c] = hn::MulAdd(w, hn::Set(d, v[c]), s[c]);
+    for (int c = 0; c < loaded; ++c) s[c] = hn::MulAdd(w, hn::Set(d, v[c]), s[c]);
+    if constexpr (permuted > 0) {
+      const V record = hn::LoadU(d, v);
+#pragma GCC unroll 32
+      for (int c = loaded; c < channels; ++c)
+        s[c] = hn::MulAdd(w, hn::TableLookupLanes(record, hn::IndicesFromVec(d, hn::Set(di, c))), s[c]);
+    }
   }
 #pragma GCC unroll 32
   for (int c = 0; c < channels; ++c) hn::Store(s[c], d, sums + c * lanes);
@@ -150,7 +158,7 @@ void SumBranches(const LeafBranches& leaf, std::span<const BranchClass> classes,
 // |terms| is less than this part of W(0) times the largest |q| around, they may have too much of a share in it.
 constexpr float faint_part = 3e-3F;
 
-void FaintLimits(const LeafBranches& leaf, float half_arm, int channels, BranchScratch& scratch, float* faint) {
+void FaintLimits(const LeafBranches& leaf, int channels, BranchScratch& scratch, float* faint) {
   const auto width = static_cast<std::size_t>(channels);
   scratch.chosen.resize(leaf.size() + 2 * lanes);
   float* const largest = scratch.sums.room(2 * width + 2 * lanes);
@@ -161,9 +169,9 @@ void FaintLimits(const LeafBranches& leaf, float half_arm, int channels, BranchS
     for (std::size_t k = 0; k < leaf.size(); ++k) most = hn::Max(most, hn::Abs(hn::LoadU(d, values(k) + c)));
     hn::StoreU(most, d, largest + c);
   }
-  // The sum of |terms| at any voxel of a block, whatever their signs, is at least that of the branches near its middle,
-  // each weighed as far from it as the voxels go.
-  const float farther = half_arm + 0.5F * leaf.voxel * (block - 1) * std::sqrt(3.0F);
+  // The sum of |terms| at any voxel of a block, whatever their signs, is about that of the branches near its middle at
+  // least, each weighed as far from it as the voxels go.
+  const float farther = 0.5F * leaf.voxel * (block - 1) * std::sqrt(3.0F);
   for (int b = 0; b < leaf_blocks; ++b) {
     CentredBox box = centres_of({b / 4 * block, b / 2 % 2 * block, b % 2 * block}, block, block, block, leaf.voxel);
     std::fill_n(box.half, 3, 0.0F);
@@ -207,8 +215,8 @@ void sum_branches(const LeafBranches& leaf, std::span<const BranchClass> classes
                   BranchScratch& scratch, float* sums) {
   HWY_DYNAMIC_DISPATCH(SumBranches)(leaf, classes, channels, mask, scratch, sums);
 }
-void faint_limits(const LeafBranches& leaf, float half_arm, int channels, BranchScratch& scratch, float* faint) {
-  HWY_DYNAMIC_DISPATCH(FaintLimits)(leaf, half_arm, channels, scratch, faint);
+void faint_limits(const LeafBranches& leaf, int channels, BranchScratch& scratch, float* faint) {
+  HWY_DYNAMIC_DISPATCH(FaintLimits)(leaf, channels, scratch, faint);
 }
 }  // namespace grainvdb
 #endif

@@ -36,8 +36,8 @@ LeafBuffers splat_contacts(const Lattice& lattice, const LucyKernel& kernel, con
   if (channels < 1 || q.size() != branches.size() * static_cast<std::size_t>(channels))
     throw std::invalid_argument("the splat needs one value per branch and channel");
   if (branches.size() == 0) return {std::make_shared<const Topology>(), channels};
-  const BranchSet set(lattice, kernel, branches, method);
-  const ContactLeaves leaves(lattice, kernel, set, q, channels);
+  const BranchSet set(lattice, kernel, branches, {q, static_cast<std::size_t>(channels)}, method);
+  const ContactLeaves leaves(lattice, kernel, set);
   auto topology = leaves.topology();
   if (method.method == LineIntegral::Method::exact)
     return sum_exactly(lattice, kernel, set, std::move(topology), q, channels);

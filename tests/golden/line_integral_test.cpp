@@ -21,8 +21,8 @@ Result contact_stress(const std::string& line_integral) {
   return run(p, *open_dumps(p.input));
 }
 
-// Each half branch may be off by 3e-5 W(0), sums in single precision by `gauss_sum_rounding` of Σ |terms|, and floats by half
-// an ulp.
+// Each half branch may be off by 3e-5 W(0), sums in single precision by `gauss_sum_rounding` of Σ |terms|, and floats
+// by half an ulp.
 TEST(DefaultLineIntegral, DiffersFromTheClosedFormByNoMoreThanItsBound) {
   const Result adaptive = contact_stress("");
   const Result exact = contact_stress("exact");
@@ -46,8 +46,8 @@ TEST(DefaultLineIntegral, DiffersFromTheClosedFormByNoMoreThanItsBound) {
     const std::size_t n = box.index(c).value();
     for (int k = 0; k < 9; ++k) {
       const auto a = static_cast<double>(found.at(c, k)), e = static_cast<double>(expected.at(c, k));
-      const double bound = lucy_rule_error * lucy(0, p.cutoff) * reaching.size(n, k) + gauss_sum_rounding * sums.size(n, k) +
-                           2 * float_rounding * std::abs(e);
+      const double bound = lucy_rule_error * lucy(0, p.cutoff) * reaching.size(n, k) +
+                           gauss_sum_rounding * sums.size(n, k) + 2 * float_rounding * std::abs(e);
       EXPECT_NEAR(a, e, bound);
       largest_share = std::max(largest_share, std::abs(a - e) / bound);
       differ += a != e ? 1U : 0U;

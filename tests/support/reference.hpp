@@ -15,8 +15,9 @@ namespace grainvdb::testing {
 /// is held to 1e-5 at every voxel by its own tests, which find errors up to 1e-6 there. (Storing in a float grid comes
 /// on top.)
 inline constexpr double sum_rounding = 4e-6;
-/// The same for sums over contacts with line_integral: exact, which are formed in double: a thousand terms and a few roundings each stay below
-/// 1000 × 2⁻⁵² = 2.2e-13, and the quadrature of the reference's line integrals is good to about that as well.
+/// The same for sums over contacts with line_integral: exact, which are formed in double: a thousand terms and a few
+/// roundings each stay below 1000 × 2⁻⁵² = 2.2e-13, and the quadrature of the reference's line integrals is good to
+/// about that as well.
 inline constexpr double contact_sum_rounding = 1e-12;
 /// And with Gauss rules, which are summed in single precision: held to 1e-5 by their own tests, which find errors up to
 /// 8e-6 where only a few branches reach a voxel, with the rims of their supports.

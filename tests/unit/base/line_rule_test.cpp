@@ -1,3 +1,5 @@
+#include "grainvdb/line_rule.hpp"
+
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -6,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "grainvdb/kernel.hpp"
-#include "grainvdb/line_rule.hpp"
 
 namespace grainvdb {
 namespace {
@@ -25,7 +26,8 @@ double largest_error(int n, double length) {
   double worst = 0;
   const double half = length / 2;
   for (int i = 0; i <= 60; ++i)
-    for (int j = 0; j <= 150; ++j) worst = std::max(worst, error(n, length, 3 * half * i * i / 3600, 3 * half * j / 150));
+    for (int j = 0; j <= 150; ++j)
+      worst = std::max(worst, error(n, length, 3 * half * i * i / 3600, 3 * half * j / 150));
   for (int i = 0; i <= 120; ++i)
     for (int j = 0; j <= 120; ++j) worst = std::max(worst, error(n, length, i / 120.0, (1 + half) * j / 120));
   return worst;

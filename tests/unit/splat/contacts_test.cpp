@@ -88,16 +88,16 @@ TEST_P(ContactSplat, IsTheSumOfItsLineIntegrals) {
   const auto q = random_values(branches.size(), 23);
   const double shift = position_error(branches.start);
   const LeafBuffers sums = splat_contacts(lattice, kernel, branches, q, 1, exact);
-  for (const ReachedVoxel& v : weigh_branches(
-           scene, branches, [&](const Vec3& p, const Vec3& a) { return kernel.line_integral(p, a); })) {
+  for (const ReachedVoxel& v :
+       weigh_branches(scene, branches, [&](const Vec3&p, const Vec3&a) { return kernel.line_integral(p, a); })) {
     double sum = 0, terms = 0, reached = 0;
     for (const auto& [b, w] : v.branches) {
       sum += q[b] * w;
       terms += std::abs(q[b]) * w;
       reached += std::abs(q[b]);
     }
-    const double tolerance = 1e-13 * terms + reached * largest_gradient(scene.cutoff) * shift +
-                             1e-14 * reached * lucy_peak(scene.cutoff);
+    const double tolerance =
+        1e-13 * terms + reached * largest_gradient(scene.cutoff) * shift + 1e-14 * reached * lucy_peak(scene.cutoff);
     EXPECT_NEAR(value_at(sums, v.voxel, 0), sum, tolerance);
   }
   expect_zero_where_inactive(sums);
@@ -140,7 +140,8 @@ TEST(ContactStress, VolumeIntegralIsMinusForceTimesBranch) {
     for (std::size_t b = 0; b < branches.size(); ++b)
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) q.push_back(-branches.force[i][b] * branches.arm[j][b]);
-    for (const LineIntegral method : {exact, LineIntegral::adaptive(), LineIntegral::gauss(1), LineIntegral::gauss(4)}) {
+    for (const LineIntegral method :
+         {exact, LineIntegral::adaptive(), LineIntegral::gauss(1), LineIntegral::gauss(4)}) {
       const LeafBuffers sigma = splat_contacts(lattice, LucyKernel(1), branches, q, 9, method);
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) {
