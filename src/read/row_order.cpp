@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <numeric>
+#include <string>
 
 #include "base/parallel.hpp"
+#include "grainvdb/error.hpp"
 #include "read/huge_pages.hpp"
 
 namespace grainvdb {
@@ -13,6 +16,13 @@ namespace {
 
 /// Fewer rows are moved faster than threads start.
 constexpr std::size_t worth_threads = std::size_t{1} << 15;
+
+/// Rows are numbered with 32 bits, of which one number stands for none.
+void check_count(std::size_t rows) {
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  if (rows >= most)
+    throw LimitError({{}, "too many rows in one frame", std::to_string(rows), "fewer than 2^32 - 1", {}});
+}
 
 struct Keyed {
   std::uint64_t key;
@@ -90,6 +100,7 @@ void reorder_columns(std::vector<std::vector<T>>& columns, const std::vector<std
 
 RowOrder ascending(const std::vector<std::int64_t>& key) {
   if (std::is_sorted(key.begin(), key.end())) return std::nullopt;
+  check_count(key.size());
   const KeyRange range(key);
   if (range.width < 4 * key.size())
     if (RowOrder order = placed(key, range)) return order;
@@ -106,6 +117,7 @@ RowOrder ascending(const std::vector<std::int64_t>& first, const std::vector<std
   std::size_t sorted = 1;
   while (sorted < first.size() && !less(sorted, sorted - 1)) ++sorted;
   if (sorted >= first.size()) return std::nullopt;
+  check_count(first.size());
 
   const KeyRange range1(first), range2(second);
   if (range1.bits + range2.bits <= 64) {
