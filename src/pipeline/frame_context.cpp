@@ -125,12 +125,20 @@ void FrameContext::bucket_particles() {
   topology_ = particle_topology(lattice_, kernel_, *buckets_);
 }
 
+// Splat buffers of this group, and the sums.
+double FrameContext::memory_needed(double leaves, int values, const MomentSums& sums) const {
+  const double summed = std::max(leaves, static_cast<double>(sums.leaf_count()));
+  return leaves * leaf_size * sizeof(double) * values + summed * static_cast<double>(sums.bytes(1));
+}
+
+bool FrameContext::fits(double leaves, int values, const MomentSums& sums) const {
+  return memory_needed(leaves, values, sums) <= memory_limit(pipeline_.limits);
+}
+
 void FrameContext::check_memory(std::size_t leaves, int values, const MomentSums& sums) const {
-  // Splat buffers of this group, and the sums.
-  const double need = static_cast<double>(leaves) * leaf_size * sizeof(double) * values +
-                      static_cast<double>(sums.bytes(std::max(leaves, sums.leaf_count())));
+  if (fits(static_cast<double>(leaves), values, sums)) return;
+  const double need = memory_needed(static_cast<double>(leaves), values, sums);
   const double limit = memory_limit(pipeline_.limits);
-  if (need <= limit) return;
   throw LimitError(
       {{frame_.file, 0},
        "step " + std::to_string(frame_.step) + " needs more memory than is allowed",
@@ -202,7 +210,10 @@ void FrameContext::splat_group(const Group& group, MomentSums& sums) {
   const int channels = static_cast<int>(values.weight_of.size());
   const bool contacts = group[0]->kind == Moment::Kind::contacts;
   const Columns3& nodes = contacts ? branches_.start : frame_.particles.position;
-  check_memory(static_cast<std::size_t>(least_leaves(lattice_, nodes, kernel_.cutoff())), channels, sums);
+  // No kernel touches more leaves than this; only where that could be too much is it worth looking closer.
+  const double along = 2 + std::ceil(2 * kernel_.cutoff() / lattice_.voxel() / leaf_edge);
+  if (!fits(along * along * along * static_cast<double>(entries(group[0]->kind)), channels, sums))
+    check_memory(static_cast<std::size_t>(least_leaves(lattice_, nodes, kernel_.cutoff())), channels, sums);
   if (!contacts) {
     bucket_particles();
     check_memory(topology_->leaf_count(), channels, sums);

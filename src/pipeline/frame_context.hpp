@@ -62,6 +62,8 @@ class FrameContext : public FrameView {
   void bucket_particles();
   /// Refuses, before it is allocated, what would exceed limits.memory_gb (LimitError).
   void check_memory(std::size_t leaves, int values, const MomentSums& sums) const;
+  double memory_needed(double leaves, int values, const MomentSums& sums) const;
+  bool fits(double leaves, int values, const MomentSums& sums) const;
   std::size_t entries(Moment::Kind kind) const;
 
   const Pipeline& pipeline_;

@@ -19,24 +19,23 @@ struct Terms {
   double denominator = 0;
 };
 
-// Looks up single voxels, remembering the leaf of the last one.
-class Reader {
+// Finds leaves, remembering the last one.
+class Finder {
  public:
-  explicit Reader(const LeafBlocks& blocks) : blocks_(blocks) {}
+  explicit Finder(const Topology& topology) : topology_(topology) {}
 
-  // The value of a channel at a voxel; zero outside the topology, where nothing was added.
-  double value(const Coord& c, int channel) {
-    const Coord origin = leaf_origin(c);
+  /// The leaf of a voxel; nothing outside the topology, where nothing was added.
+  std::optional<std::size_t> leaf(const Coord& origin) {
     if (!known_ || origin != origin_) {
-      leaf_ = blocks_.topology->find(origin);
+      leaf_ = topology_.find(origin);
       origin_ = origin;
       known_ = true;
     }
-    return leaf_ ? blocks_.block(*leaf_, channel)[leaf_offset(c)] : 0;
+    return leaf_;
   }
 
  private:
-  const LeafBlocks& blocks_;
+  const Topology& topology_;
   bool known_ = false;
   Coord origin_;
   std::optional<std::size_t> leaf_;
@@ -45,19 +44,27 @@ class Reader {
 class VoxelRatio {
  public:
   explicit VoxelRatio(const RatioView& ratio)
-      : ratio_(ratio), numerator_(ratio.numerator), denominator_(ratio.denominator) {}
+      : ratio_(ratio),
+        shared_(ratio.numerator.topology == ratio.denominator.topology),
+        numerator_(*ratio.numerator.topology),
+        denominator_(*ratio.denominator.topology) {}
 
   Terms operator()(const Coord& c) {
+    const Coord origin = leaf_origin(c);
+    const int offset = leaf_offset(c);
     Terms t;
-    t.denominator = denominator_.value(c, ratio_.channel);
-    for (int a = 0; a < 3; ++a) t.numerator[a] = numerator_.value(c, ratio_.first + a);
+    const auto below = denominator_.leaf(origin);
+    if (below) t.denominator = ratio_.denominator.block(*below, ratio_.channel)[offset];
+    if (const auto above = shared_ ? below : numerator_.leaf(origin))
+      for (int a = 0; a < 3; ++a) t.numerator[a] = ratio_.numerator.block(*above, ratio_.first + a)[offset];
     return t;
   }
 
  private:
   const RatioView& ratio_;
-  Reader numerator_;
-  Reader denominator_;
+  bool shared_;
+  Finder numerator_;
+  Finder denominator_;
 };
 
 // Sums over the homogeneous axes, dense over the bounds of the denominator along the others.
