@@ -45,8 +45,9 @@ void splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, cons
 LeafBuffers splat_particle_gradients(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
                                      std::shared_ptr<const Topology> topology, std::span<const double> q, int values);
 
-/// Σ over half branches of q ∫₀¹ W(x - x_α + s a) ds, on the voxels that any branch reaches (the integral is > 0).
-/// `q` is laid out [branch][channel].
+/// Σ over half branches of q ∫₀¹ W(x - x_α + s a) ds, on the voxels within one cutoff of any branch (where the integral
+/// is > 0), whatever the method. `q` is laid out [branch][channel]. Method::exact sums in double precision; the rules
+/// are summed by vectors in single precision, which is exact to 1e-5 of the sum of |terms| at every voxel.
 LeafBuffers splat_contacts(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
                            std::span<const double> q, int channels, LineIntegral method);
 
