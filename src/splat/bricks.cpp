@@ -180,6 +180,17 @@ LeafMask FaintVoxels(const float* sum, float least, const float* plain, float ri
   return faint;
 }
 
+float LeastOf(const float* values, const LeafMask& active) {
+  V least = hn::Set(d, hwy::HighestValue<float>());
+  for (int v = 0; v < leaf_size; v += lanes) {
+    const std::uint64_t bits = active.words[static_cast<std::size_t>(v / 64)] >> (v % 64);
+    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(bits >> 8U)};
+    const V value = hn::LoadU(d, values + v);
+    least = hn::IfThenElse(hn::LoadMaskBits(d, bytes), hn::Min(least, value), least);
+  }
+  return hn::GetLane(hn::MinOfLanes(d, least));
+}
+
 template <class Tag>
 void CountPart(const float* HWY_RESTRICT values, std::size_t stride, std::size_t count, Tag tag, const float* limit,
                float* few) {
@@ -229,6 +240,7 @@ HWY_EXPORT(SplatLeaf);
 HWY_EXPORT(ScaleSums);
 HWY_EXPORT(Narrow);
 HWY_EXPORT(FaintVoxels);
+HWY_EXPORT(LeastOf);
 HWY_EXPORT(CountBelow);
 HWY_EXPORT(SumTerms);
 HWY_EXPORT(TargetName);
@@ -244,6 +256,9 @@ void narrow(const double* from, std::size_t count, float* to) {
 LeafMask faint_voxels(const float* sum, float least, const float* plain, float rim, float enough,
                       const LeafMask& active) {
   return HWY_DYNAMIC_DISPATCH(FaintVoxels)(sum, least, plain, rim, enough, active);
+}
+float least_of(const float* values, const LeafMask& active) {
+  return HWY_DYNAMIC_DISPATCH(LeastOf)(values, active);
 }
 void count_below(const float* values, std::size_t stride, std::size_t count, const float* limit, float* few) {
   HWY_DYNAMIC_DISPATCH(CountBelow)(values, stride, count, limit, few);

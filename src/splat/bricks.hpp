@@ -48,6 +48,9 @@ void scale_sums(const ScaledSum& from, const LeafMask& active, double* to);
 LeafMask faint_voxels(const float* sum, float least, const float* plain, float rim, float enough,
                       const LeafMask& active);
 
+/// The least of a leaf's values at its active voxels.
+float least_of(const float* values, const LeafMask& active);
+
 /// few[channel] = how many of `count` values, [candidate][stride], are smaller than limit[channel] in magnitude. Limits
 /// and counts have `stride` elements.
 void count_below(const float* values, std::size_t stride, std::size_t count, const float* limit, float* few);

@@ -89,29 +89,23 @@ class FastSplat {
   /// depend on which others are asked for. Sums about a reference are small against the reference, whose own sum is
   /// right.
   LeafMask find_faint(const LeafMask& active, LeafWork& work) const {
-    constexpr float any_number = std::numeric_limits<float>::infinity();
-    work.faint.resize(channels_);
-    LeafMask any;
-    bool count = false;
-    for (std::size_t c = 0; c < channels_; ++c) {
-      const bool shifted = work.records.reference[c] != 0;
-      work.faint[c] = faint_voxels(sum(work, c), shifted ? 0.0F : least(work, c), work.sums.plain.data(),
-                                   static_cast<float>(rim), any_number, active);
-      any |= work.faint[c];
-      count = count || !(shifted || work.faint[c].none());
-    }
-    if (!count) return any;
-
     work.limits.assign(records_.stride(), 0.0F);
     work.few.resize(records_.stride());
-    for (std::size_t c = 0; c < channels_; ++c) work.limits[c] = static_cast<float>(small) * work.records.largest[c];
+    for (std::size_t c = 0; c < channels_; ++c)
+      if (work.records.reference[c] == 0) work.limits[c] = static_cast<float>(small) * work.records.largest[c];
     count_below(work.records.values.data(), records_.stride(), work.candidates.count, work.limits.data(),
                 work.few.data());
-    any = {};
+    const auto enough = [&](std::size_t c) { return work.few[c] + static_cast<float>(faint / small); };
+    float most = static_cast<float>(rim);
+    for (std::size_t c = 0; c < channels_; ++c) most = std::max(most, enough(c));
+    LeafMask any;
+    if (least_of(work.sums.plain.data(), active) >= most) return any;
+
+    work.faint.resize(channels_);
     for (std::size_t c = 0; c < channels_; ++c) {
-      if (work.records.reference[c] == 0 && !work.faint[c].none())
-        work.faint[c] = faint_voxels(sum(work, c), least(work, c), work.sums.plain.data(), static_cast<float>(rim),
-                                     work.few[c] + static_cast<float>(faint / small), active);
+      const float small_sum = work.records.reference[c] == 0 ? least(work, c) : 0.0F;
+      work.faint[c] = faint_voxels(sum(work, c), small_sum, work.sums.plain.data(), static_cast<float>(rim), enough(c),
+                                   active);
       any |= work.faint[c];
     }
     return any;
