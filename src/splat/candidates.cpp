@@ -159,14 +159,13 @@ HWY_EXPORT(PickNear);
 HWY_EXPORT(PickPlaces);
 HWY_EXPORT(Cover);
 
-void gather_candidates(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCandidates& out) {
-  out.count = 0;
-  out.cells.clear();
+namespace {
+
+// Scans the cells listed in `out`; those without candidates are dropped.
+void scan_cells(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCandidates& out) {
   std::size_t most = 0;
-  for_each_cell(buckets, leaf, cutoff, [&](std::size_t cell) {
-    out.cells.push_back({cell, 0, 0});
-    most += buckets.start[cell + 1] - buckets.start[cell];
-  });
+  for (const CellRange& range : out.cells) most += buckets.start[range.cell + 1] - buckets.start[range.cell];
+  out.count = 0;
   out.x.room(most);
   out.y.room(most);
   out.z.room(most);
@@ -188,6 +187,22 @@ void gather_candidates(const Buckets& buckets, const Coord& leaf, double cutoff,
     range.end = out.count;
   }
   std::erase_if(out.cells, [](const CellRange& range) { return range.begin == range.end; });
+}
+
+}  // namespace
+
+void gather_candidates(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCandidates& out) {
+  out.cells.clear();
+  for_each_cell(buckets, leaf, cutoff, [&](std::size_t cell) { out.cells.push_back({cell, 0, 0}); });
+  scan_cells(buckets, leaf, cutoff, out);
+}
+
+void gather_own(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCandidates& out) {
+  out.cells.clear();
+  const auto it = std::lower_bound(buckets.cells.begin(), buckets.cells.end(), leaf);
+  if (it != buckets.cells.end() && *it == leaf)
+    out.cells.push_back({static_cast<std::size_t>(it - buckets.cells.begin()), 0, 0});
+  scan_cells(buckets, leaf, cutoff, out);
 }
 
 void cover(const LeafCandidates& candidates, float voxel, Picked& scratch, LeafMask& inside, LeafMask& perhaps) {

@@ -28,6 +28,9 @@ struct LeafCandidates {
 /// Collects the entries within `cutoff` (in voxels) of the box of the leaf's voxel centres.
 void gather_candidates(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCandidates& out);
 
+/// Collects those of the leaf's own cell alone.
+void gather_own(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCandidates& out);
+
 /// A box of voxel centres of a leaf: the first voxel, and how many there are along each edge.
 struct VoxelBox {
   int x = 0, y = 0, z = 0;

@@ -27,6 +27,12 @@ bool reached(const Lattice& lattice, const LucyKernel& kernel, const Buckets& bu
   return false;
 }
 
+bool holds(const LeafMask& mask, const LeafMask& part) {
+  for (std::size_t w = 0; w < mask.words.size(); ++w)
+    if ((part.words[w] & ~mask.words[w]) != 0) return false;
+  return true;
+}
+
 }  // namespace
 
 std::shared_ptr<const Topology> particle_topology(const Lattice& lattice, const LucyKernel& kernel,
@@ -37,11 +43,19 @@ std::shared_ptr<const Topology> particle_topology(const Lattice& lattice, const 
   tbb::enumerable_thread_specific<LeafWork> works;
   parallel_for(leaves.size(), [&](std::size_t l) {
     LeafWork& work = works.local();
-    gather_candidates(buckets, leaves[l], cutoff, work.candidates);
+    const LeafMask stored = LeafWindow(lattice, leaves[l]).mask();
     LeafMask inside;
     LeafMask perhaps;
+    // Within the material the particles of a leaf alone cover it.
+    gather_own(buckets, leaves[l], cutoff, work.candidates);
     cover(work.candidates, static_cast<float>(1 / cutoff), work.near, inside, perhaps);
-    const LeafMask stored = LeafWindow(lattice, leaves[l]).mask();
+    if (holds(inside, stored)) {
+      masks[l] = stored;
+      return;
+    }
+    gather_candidates(buckets, leaves[l], cutoff, work.candidates);
+    inside = perhaps = {};
+    cover(work.candidates, static_cast<float>(1 / cutoff), work.near, inside, perhaps);
     for (std::size_t w = 0; w < stored.words.size(); ++w) {
       masks[l].words[w] = inside.words[w] & stored.words[w];
       perhaps.words[w] &= stored.words[w] & ~inside.words[w];
