@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "bin/branches.hpp"
-#include "bin/least_leaves.hpp"
+#include "bin/leaf_bounds.hpp"
 #include "grainvdb/stage.hpp"
 #include "pipeline/number.hpp"
 #include "splat/sample.hpp"
@@ -210,9 +210,8 @@ void FrameContext::splat_group(const Group& group, MomentSums& sums) {
   const int channels = static_cast<int>(values.weight_of.size());
   const bool contacts = group[0]->kind == Moment::Kind::contacts;
   const Columns3& nodes = contacts ? branches_.start : frame_.particles.position;
-  // No kernel touches more leaves than this; only where that could be too much is it worth looking closer.
-  const double along = 2 + std::ceil(2 * kernel_.cutoff() / lattice_.voxel() / leaf_edge);
-  if (!fits(along * along * along * static_cast<double>(entries(group[0]->kind)), channels, sums))
+  // Only where the most that it can be is too much is it worth looking closer.
+  if (!fits(most_leaves(lattice_, nodes, 2 * kernel_.cutoff()), channels, sums))
     check_memory(static_cast<std::size_t>(least_leaves(lattice_, nodes, kernel_.cutoff())), channels, sums);
   if (!contacts) {
     bucket_particles();

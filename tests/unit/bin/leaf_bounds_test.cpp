@@ -1,6 +1,7 @@
-#include "bin/least_leaves.hpp"
+#include "bin/leaf_bounds.hpp"
 
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -40,6 +41,32 @@ TEST(LeastLeaves, CubesAreCountedOnceAndPeriodsAreFilled) {
 
 TEST(LeastLeaves, NoPointsNeedNone) {
   EXPECT_EQ(least_leaves(Lattice(1, {0, 0, 0}), {}, 3), 0);
+}
+
+TEST(MostLeaves, IsNoLessThanThereAre) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const bool periodic : {false, true})
+    for (const std::size_t points : {std::size_t{1}, std::size_t{10}, std::size_t{3000}}) {
+      Lattice lattice(0.1, {0.03, 0, 0});
+      if (periodic) lattice.set_periods({{-3, -3, -3}, {3, 3, 3}, {true, true, true}});
+      Columns3 x;
+      for (auto& column : x)
+        for (std::size_t p = 0; p < points; ++p) column.push_back(3 * uniform(random));
+      const auto topology = particle_topology(lattice, LucyKernel(0.7), bin_points(lattice, x, 0.7));
+      EXPECT_GE(most_leaves(lattice, x, 0.7), static_cast<double>(topology->leaf_count())) << points;
+      EXPECT_LE(least_leaves(lattice, x, 0.7), most_leaves(lattice, x, 0.7)) << points;
+    }
+}
+
+TEST(MostLeaves, FarPointsAreBoundedByWhatSurroundsThem) {
+  const Lattice lattice(0.1, {0, 0, 0});
+  const Columns3 x{{{0, 1e5}, {0, 1e5}, {0, 1e5}}};
+  EXPECT_LT(most_leaves(lattice, x, 0.4), 1000);
+}
+
+TEST(MostLeaves, NoPointsNeedNone) {
+  EXPECT_EQ(most_leaves(Lattice(1, {0, 0, 0}), {}, 3), 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "bin/least_leaves.hpp"
+#include "bin/leaf_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +30,23 @@ double least_leaves(const Lattice& lattice, const Columns3& position, double cut
   std::sort(cubes.begin(), cubes.end());
   const auto count = std::unique(cubes.begin(), cubes.end()) - cubes.begin();
   return static_cast<double>(count) * edge[0] * edge[1] * edge[2] / leaf_size;
+}
+
+double most_leaves(const Lattice& lattice, const Columns3& position, double reach) {
+  if (position[0].empty()) return 0;
+  const double r = reach / lattice.voxel();
+  // A stretch of n voxels touches at most n/8 + 2 leaves.
+  const auto touched = [](double voxels) { return voxels / leaf_edge + 2; };
+  double box = 1;
+  for (int a = 0; a < 3; ++a) {
+    const auto [least, greatest] = std::minmax_element(position[a].begin(), position[a].end());
+    double extent = (*greatest - *least) / lattice.voxel() + 2 * r;
+    if (const auto& period = lattice.period(a)) extent = std::min(extent, static_cast<double>(period->count));
+    box *= touched(extent);
+  }
+  const double each = touched(2 * r);
+  // Along a periodic axis images may touch leaves at both ends of the period.
+  return std::min(box, 8 * each * each * each * static_cast<double>(position[0].size()));
 }
 
 }  // namespace grainvdb
