@@ -31,6 +31,7 @@ MomentSums::Leaf& MomentSums::leaf(const Coord& origin) {
   if (!slot) {
     slot = std::make_unique<Leaf>();
     slot->sums.resize(channels_ * leaf_size);
+    all_.push_back(slot.get());
   }
   return *slot;
 }
@@ -72,20 +73,19 @@ void MomentSums::add(const MomentPtr& moment, const LeafBuffers& part, int chann
 
 void MomentSums::end_frame() {
   const double sample = complete_.empty() ? 1 : 0;
-  for (auto& [origin, leaf] : leaves_) {
-    leaf->reached.for_each([&](int v) { leaf->frames[static_cast<std::size_t>(v)] += sample; });
-    leaf->mask |= leaf->reached;
-    leaf->reached = {};
-  }
+  parallel_for(all_.size(), [&](std::size_t l) {
+    Leaf& leaf = *all_[l];
+    leaf.reached.for_each([&](int v) { leaf.frames[static_cast<std::size_t>(v)] += sample; });
+    leaf.mask |= leaf.reached;
+    leaf.reached = {};
+  });
 }
 
 void MomentSums::end_sweep(std::size_t frames) {
-  std::vector<Leaf*> all;
-  for (const auto& [origin, leaf] : leaves_) all.push_back(leaf.get());
   const auto n = static_cast<double>(frames);
-  parallel_for(all.size(), [&](std::size_t l) {
+  parallel_for(all_.size(), [&](std::size_t l) {
     for (const std::string& name : added_) {
-      double* sum = all[l]->sums.data() + static_cast<std::size_t>(first_channel_.at(name)) * leaf_size;
+      double* sum = all_[l]->sums.data() + static_cast<std::size_t>(first_channel_.at(name)) * leaf_size;
       for (std::size_t i = 0; i < static_cast<std::size_t>(count_.at(name)) * leaf_size; ++i) sum[i] /= n;
     }
   });

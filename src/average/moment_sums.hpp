@@ -102,6 +102,7 @@ class MomentSums {
   std::set<std::string> added_;       // in the current sweep
   std::set<std::string> complete_;    // in earlier sweeps
   std::unordered_map<Coord, std::unique_ptr<Leaf>, CoordHash> leaves_;
+  std::vector<Leaf*> all_;  // in the order they came
 };
 
 }  // namespace grainvdb

@@ -8,6 +8,7 @@
 
 #include <unistd.h>
 
+#include "base/parallel.hpp"
 #include "bin/branches.hpp"
 #include "bin/leaf_bounds.hpp"
 #include "grainvdb/stage.hpp"
@@ -192,15 +193,20 @@ FrameContext::Values FrameContext::values_of(Group& group) const {
   const std::size_t n = entries(group[0]->kind);
   const std::size_t stride = all.weight_of.size();
   all.q.resize(n * stride);
-  std::vector<double> own;
-  std::size_t first = 0;
-  for (const MomentPtr& m : group) {
-    const auto width = static_cast<std::size_t>(m->value_count());
-    own.assign(n * width, 0.0);
-    m->values(*this, own);
-    for (std::size_t i = 0; i < n; ++i) std::copy_n(own.data() + i * width, width, all.q.data() + i * stride + first);
-    first += width;
+  if (group.size() == 1) {
+    group[0]->values(*this, all.q);
+    return all;
   }
+  std::vector<std::size_t> first(group.size());
+  for (std::size_t g = 1; g < group.size(); ++g)
+    first[g] = first[g - 1] + static_cast<std::size_t>(group[g - 1]->value_count());
+  parallel_for(group.size(), [&](std::size_t g) {
+    const auto width = static_cast<std::size_t>(group[g]->value_count());
+    std::vector<double> own(n * width);
+    group[g]->values(*this, own);
+    for (std::size_t i = 0; i < n; ++i)
+      std::copy_n(own.data() + i * width, width, all.q.data() + i * stride + first[g]);
+  });
   return all;
 }
 

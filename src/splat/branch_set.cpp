@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "base/parallel.hpp"
+
 namespace grainvdb {
 namespace {
 
@@ -43,6 +45,8 @@ void BranchSet::plan() {
     used[n] = true;
     half_arm_[n] = std::max(half_arm_[n], 0.5 * length);
   };
+  std::vector<double> wholes(adaptive ? branches_.size() / 2 : 0);
+  parallel_for(wholes.size(), [&](std::size_t contact) { wholes[contact] = whole_length(2 * contact); });
   for (std::size_t b = 0; b < branches_.size(); ++b) {
     const Vec3 a = half(b);
     const double length = std::sqrt(dot(a, a));
@@ -51,7 +55,7 @@ void BranchSet::plan() {
       note(only_points_, length);
       continue;
     }
-    if (const double whole = whole_length(b); whole > 0) {
+    if (const double whole = b % 2 == 0 && b / 2 < wholes.size() ? wholes[b / 2] : 0; whole > 0) {
       plans_[b] = {static_cast<std::uint8_t>(divide_branch(whole / kernel_.cutoff()).points), true, 1};
       note(plans_[b].points, whole);
       halves_only = false;
@@ -73,7 +77,6 @@ void BranchSet::plan() {
 
 /// The length of the branch that a half branch and the next make up, or 0 if they do not or are better left apart.
 double BranchSet::whole_length(std::size_t b) const {
-  if (b + 1 >= branches_.size()) return 0;
   const Vec3 a1 = half(b), a2 = half(b + 1);
   const Vec3 l{a1[0] - a2[0], a1[1] - a2[1], a1[2] - a2[2]};
   const double length = std::sqrt(dot(l, l)), length1 = std::sqrt(dot(a1, a1)), length2 = std::sqrt(dot(a2, a2));

@@ -24,7 +24,7 @@ ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, c
   if (buckets.point.size() > std::numeric_limits<std::int32_t>::max()) throw std::invalid_argument("too many contacts");
   for (int n = 0; n <= 8; ++n) rules_.emplace_back(n == 0 ? std::span<const LineNode>{} : set.rule(n));
   find_scales();
-  records_.resize(buckets.point.size() * stride_ + Grow<float>::slack);
+  records_.room(buckets.point.size() * stride_);
   if (set.points_used().size() > 1) points_.resize(buckets.point.size());
   parallel_for(buckets.point.size(), [&](std::size_t e) {
     const std::size_t piece = buckets.point[e];
@@ -37,8 +37,16 @@ ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, c
 }
 
 void ContactLeaves::find_scales() {
-  for (const std::uint32_t piece : set_.buckets().point)
-    for (std::size_t c = 0; c < channels_; ++c) scale_[c] = std::max(scale_[c], std::abs(set_.value(piece, c)));
+  const std::vector<std::uint32_t>& piece = set_.buckets().point;
+  constexpr std::size_t run = 4096;
+  std::vector<double> largest((piece.size() + run - 1) / run * channels_);
+  parallel_for(largest.size() / channels_, [&](std::size_t r) {
+    double* of_run = largest.data() + r * channels_;
+    for (std::size_t e = r * run; e < std::min(piece.size(), (r + 1) * run); ++e)
+      for (std::size_t c = 0; c < channels_; ++c) of_run[c] = std::max(of_run[c], std::abs(set_.value(piece[e], c)));
+  });
+  for (std::size_t n = 0; n < largest.size(); ++n)
+    scale_[n % channels_] = std::max(scale_[n % channels_], largest[n]);
   for (double& scale : scale_)
     if (scale == 0) scale = 1;
 }

@@ -50,7 +50,7 @@ class ContactLeaves {
   std::size_t channels_;
   std::size_t stride_;
   std::vector<double> scale_;         // largest |q| of each channel: keeps single precision in its range
-  std::vector<float> records_;        // [entry][arm, values]: 4 (3 + channels) bytes per entry
+  Grow<float> records_;        // [entry][arm, values]: 4 (3 + channels) bytes per entry
   std::vector<std::uint8_t> points_;  // of each entry; empty when all take the same
   std::vector<BranchRule> rules_;     // by number of points
 };

@@ -39,22 +39,29 @@ std::vector<Coord> leaves_in_reach(const Lattice& lattice, const Buckets& bucket
       if (r.x == x && r.y == y) return r;
     return rows.emplace_back(Row{x, y, std::numeric_limits<std::int32_t>::min()});
   };
+  struct Range {
+    std::array<std::int32_t, 3> low, high;
+  };
+  std::vector<Range> reached(buckets.cells.size());
+  parallel_for(reached.size(), [&](std::size_t cell) {
+    for (int a = 0; a < 3; ++a) {
+      auto& low = reached[cell].low[a];
+      auto& high = reached[cell].high[a];
+      const double* index = buckets.index[a].data();
+      const auto [least, greatest] = std::minmax_element(index + buckets.start[cell], index + buckets.start[cell + 1]);
+      low = static_cast<std::int32_t>(std::floor(*least - reach));
+      high = static_cast<std::int32_t>(std::ceil(*greatest + reach));
+      if (const auto& period = lattice.period(a)) {
+        low = std::max(low, period->first);
+        high = std::min(high, period->first + period->count - 1);
+      }
+    }
+  });
   for (std::size_t cell = 0; cell < buckets.cells.size(); ++cell) {
     if (cell == 0 || buckets.cells[cell - 1].x != buckets.cells[cell].x ||
         buckets.cells[cell - 1].y != buckets.cells[cell].y)
       rows.clear();
-    std::array<std::int32_t, 3> low{};
-    std::array<std::int32_t, 3> high{};
-    for (int a = 0; a < 3; ++a) {
-      const double* index = buckets.index[a].data();
-      const auto [least, greatest] = std::minmax_element(index + buckets.start[cell], index + buckets.start[cell + 1]);
-      low[a] = static_cast<std::int32_t>(std::floor(*least - reach));
-      high[a] = static_cast<std::int32_t>(std::ceil(*greatest + reach));
-      if (const auto& period = lattice.period(a)) {
-        low[a] = std::max(low[a], period->first);
-        high[a] = std::min(high[a], period->first + period->count - 1);
-      }
-    }
+    const auto& [low, high] = reached[cell];
     if (low[0] > high[0] || low[1] > high[1] || low[2] > high[2]) continue;
     const Coord first = leaf_origin({low[0], low[1], low[2]});
     for (std::int32_t x = first.x; x <= high[0]; x += leaf_edge)
