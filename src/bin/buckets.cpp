@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -42,18 +43,19 @@ std::int32_t cell(double u) {
   return (toward_zero - (toward_zero > x ? 1 : 0)) & ~(leaf_edge - 1);
 }
 
-using Cells = std::array<std::vector<std::int32_t>, 3>;
 using Order = std::vector<std::uint32_t>;
 
 // Images of all points before they are sorted, in ascending order of their points.
 struct Unsorted {
-  explicit Unsorted(std::size_t entries) : point(entries) {
-    for (auto& column : index) column.resize(entries);
-    for (auto& column : key) column.resize(entries);
+  explicit Unsorted(std::size_t entries)
+      : count(entries), point(std::make_unique_for_overwrite<std::uint32_t[]>(entries)) {
+    for (auto& column : index) column = std::make_unique_for_overwrite<double[]>(entries);
+    for (auto& column : key) column = std::make_unique_for_overwrite<std::int32_t[]>(entries);
   }
-  std::vector<std::uint32_t> point;
-  Columns3 index;
-  Cells key;
+  std::size_t count;
+  std::unique_ptr<std::uint32_t[]> point;
+  std::array<std::unique_ptr<double[]>, 3> index;
+  std::array<std::unique_ptr<std::int32_t[]>, 3> key;
 };
 
 std::size_t image_count(const std::array<Images, 3>& image) {
@@ -97,8 +99,8 @@ Unsorted all_images(const Lattice& lattice, const Columns3& position, double rea
 
 // The cells along one axis as numbers from 0.
 struct Axis {
-  explicit Axis(const std::vector<std::int32_t>& key) {
-    const auto [low, high] = std::minmax_element(key.begin(), key.end());
+  Axis(const std::int32_t* key, std::size_t entries) {
+    const auto [low, high] = std::minmax_element(key, key + entries);
     base = *low;
     count = number(*high) + 1;
   }
@@ -123,10 +125,12 @@ void counting_sort(std::size_t range, const Key& key, Order& order) {
 // The entries ordered by cell. One counting sort does where the cells are not many more than the entries; where
 // material is spread thinly, digits of 16 bits of one axis after the other keep the memory in proportion to the
 // entries.
-Order by_cell(const Cells& key) {
-  Order order(key[0].size());
+Order by_cell(const Unsorted& all) {
+  const auto& key = all.key;
+  Order order(all.count);
   std::iota(order.begin(), order.end(), std::uint32_t{0});
-  const std::array<Axis, 3> axis{Axis(key[0]), Axis(key[1]), Axis(key[2])};
+  const std::array<Axis, 3> axis{Axis(key[0].get(), all.count), Axis(key[1].get(), all.count),
+                                 Axis(key[2].get(), all.count)};
   const double cells = static_cast<double>(axis[0].count) * static_cast<double>(axis[1].count) *
                        static_cast<double>(axis[2].count);
   if (cells <= 1024 + 4.0 * static_cast<double>(order.size())) {
@@ -156,9 +160,9 @@ Buckets bin_points(const Lattice& lattice, const Columns3& position, double reac
   b.start.push_back(0);
   if (position[0].empty()) return b;
   const Unsorted all = all_images(lattice, position, reach / lattice.voxel());
-  const std::size_t entries = all.point.size();
+  const std::size_t entries = all.count;
   if (entries == 0) return b;
-  const Order order = by_cell(all.key);
+  const Order order = by_cell(all);
   const auto cell_of = [&](std::size_t k) {
     const std::uint32_t e = order[k];
     return Coord{all.key[0][e], all.key[1][e], all.key[2][e]};

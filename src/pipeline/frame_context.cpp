@@ -223,26 +223,34 @@ void FrameContext::splat_group(const Group& group, MomentSums& sums) {
     bucket_particles();
     check_memory(topology_->leaf_count(), channels, sums);
   }
-  if (group[0]->kind == Moment::Kind::particles && !group[0]->in_double) {
-    splat_fast(group, values, sums);
+  if (contacts || (group[0]->kind == Moment::Kind::particles && !group[0]->in_double)) {
+    splat_leaves(group, values, sums);
   } else {
-    keep(splat(group, values), group, sums);
+    keep(splat_in_double(group, values), group, sums);
   }
 }
 
-LeafBuffers FrameContext::splat(const Group& group, const Values& values) const {
+LeafBuffers FrameContext::splat_in_double(const Group& group, const Values& values) const {
   const int channels = static_cast<int>(values.weight_of.size());
-  switch (group[0]->kind) {
-    case Moment::Kind::contacts:
-      return splat_contacts(lattice_, kernel_, branches_, values.q, channels, group[0]->line_integral);
-    case Moment::Kind::particle_gradients:
-      return splat_particle_gradients(lattice_, kernel_, *buckets_, topology_, values.q, channels);
-    default:
-      return splat_particles(lattice_, kernel_, *buckets_, topology_, values.q, channels);
+  return group[0]->kind == Moment::Kind::particle_gradients
+             ? splat_particle_gradients(lattice_, kernel_, *buckets_, topology_, values.q, channels)
+             : splat_particles(lattice_, kernel_, *buckets_, topology_, values.q, channels);
+}
+
+void FrameContext::splat_leaves(const Group& group, const Values& values, MomentSums& sums) {
+  if (group[0]->kind == Moment::Kind::contacts) {
+    const ContactSplat splat(lattice_, kernel_, branches_, values.q, static_cast<int>(values.weight_of.size()),
+                             group[0]->line_integral);
+    check_memory(splat.topology()->leaf_count(), 0, sums);
+    splat.sums(consumer(group, splat.topology(), sums));
+  } else {
+    splat_particles_fast(lattice_, kernel_, *buckets_, *topology_, values.q, values.weight_of,
+                         consumer(group, topology_, sums));
   }
 }
 
-void FrameContext::splat_fast(const Group& group, const Values& values, MomentSums& sums) {
+LeafConsumer FrameContext::consumer(const Group& group, const std::shared_ptr<const Topology>& topology,
+                                    MomentSums& sums) {
   struct Part {
     std::size_t from, channels;  // of the splat
     int to = 0;                  // channel of the buffer
@@ -264,22 +272,19 @@ void FrameContext::splat_fast(const Group& group, const Values& values, MomentSu
     }
     from += channels;
   }
-  auto buffers = std::make_unique<LeafBuffers>(topology_, to);
-  const MomentSums::Target target = sums.target(wanted, *topology_);
-  splat_particles_fast(lattice_, kernel_, *buckets_, *topology_, values.q, values.weight_of,
-                       [&](std::size_t leaf, const double* all) {
-                         for (std::size_t k = 0; k < summed.size(); ++k)
-                           target.add(leaf, k, all + summed[k].from * leaf_size);
-                         for (const Part& p : kept)
-                           std::copy_n(all + p.from * leaf_size, p.channels * leaf_size, buffers->block(leaf, p.to));
-                       });
+  buffers_.push_back(std::make_unique<LeafBuffers>(topology, to));
+  LeafBuffers* const buffers = buffers_.back().get();
   to = 0;
   for (const MomentPtr& m : group)
     if (kept_.contains(m->name)) {
-      places_[m->name] = {buffers.get(), to};
+      places_[m->name] = {buffers, to};
       to += m->channels;
     }
-  buffers_.push_back(std::move(buffers));
+  return [summed, kept, buffers, target = sums.target(wanted, *topology)](std::size_t leaf, const double* all) {
+    for (std::size_t k = 0; k < summed.size(); ++k) target.add(leaf, k, all + summed[k].from * leaf_size);
+    for (const Part& p : kept)
+      std::copy_n(all + p.from * leaf_size, p.channels * leaf_size, buffers->block(leaf, p.to));
+  };
 }
 
 void FrameContext::keep(LeafBuffers buffers, const Group& group, MomentSums& sums) {

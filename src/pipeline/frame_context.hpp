@@ -15,6 +15,7 @@
 #include "grainvdb/leaf_buffers.hpp"
 #include "grainvdb/moment.hpp"
 #include "grainvdb/pipeline.hpp"
+#include "splat/leaf_consumer.hpp"
 
 namespace grainvdb {
 
@@ -54,11 +55,12 @@ class FrameContext : public FrameView {
   void splat_group(const Group& group, MomentSums& sums);
   void combine_voxels(const Moment& moment, MomentSums& sums);
   /// Splats into the sums, with no buffer but for the moments that are kept.
-  void splat_fast(const Group& group, const Values& values, MomentSums& sums);
+  void splat_leaves(const Group& group, const Values& values, MomentSums& sums);
+  LeafConsumer consumer(const Group& group, const std::shared_ptr<const Topology>& topology, MomentSums& sums);
   void keep(LeafBuffers buffers, const Group& group, MomentSums& sums);
   /// Appends to the group the weights that it lacks.
   Values values_of(Group& group) const;
-  LeafBuffers splat(const Group& group, const Values& values) const;
+  LeafBuffers splat_in_double(const Group& group, const Values& values) const;
   void bucket_particles();
   /// Refuses, before it is allocated, what would exceed limits.memory_gb (LimitError).
   void check_memory(std::size_t leaves, int values, const MomentSums& sums) const;

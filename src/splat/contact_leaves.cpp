@@ -9,6 +9,7 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "base/parallel.hpp"
+#include "splat/bricks.hpp"
 #include "splat/gather.hpp"
 
 namespace grainvdb {
@@ -60,11 +61,13 @@ std::shared_ptr<const Topology> ContactLeaves::topology() const {
   return std::make_shared<const Topology>(std::move(leaves), std::move(masks));
 }
 
-LeafBuffers ContactLeaves::sums(std::shared_ptr<const Topology> topology) const {
-  LeafBuffers result(std::move(topology), static_cast<int>(channels_));
-  tbb::enumerable_thread_specific<ContactWork> work;
-  parallel_for(result.topology()->leaf_count(), [&](std::size_t l) { run(l, result, work.local()); });
-  return result;
+void ContactLeaves::sums(const Topology& topology, const LeafConsumer& consume) const {
+  tbb::enumerable_thread_specific<ContactWork> works;
+  parallel_for(topology.leaf_count(), [&](std::size_t l) {
+    ContactWork& work = works.local();
+    run(topology.origin(l), topology.mask(l), work);
+    consume(l, work.values.data());
+  });
 }
 
 /// Of the branches in work.cells.
@@ -148,14 +151,12 @@ Vec3 ContactLeaves::from_middle(const Coord& voxel, std::size_t entry) const {
   return {voxel.x - index[0][entry], voxel.y - index[1][entry], voxel.z - index[2][entry]};
 }
 
-void ContactLeaves::run(std::size_t leaf, LeafBuffers& result, ContactWork& work) const {
-  const Topology& topology = *result.topology();
-  const Coord origin = topology.origin(leaf);
-  const LeafMask& mask = topology.mask(leaf);
+void ContactLeaves::run(const Coord& origin, const LeafMask& mask, ContactWork& work) const {
   find_cells(origin, work);
   collect(origin, work);
   sort_by_rule(work);
   work.sums.resize(channels_ * leaf_size);
+  work.values.resize(channels_ * leaf_size);
   work.faint.resize(leaf_blocks * channels_);
   sum_branches(work.candidates, work.classes, static_cast<int>(channels_), mask, work.scratch, work.sums.data());
   faint_limits(work.candidates, static_cast<int>(channels_), work.scratch, work.faint.data());
@@ -163,9 +164,7 @@ void ContactLeaves::run(std::size_t leaf, LeafBuffers& result, ContactWork& work
   const double peak = kernel_.value(0);
   for (std::size_t c = 0; c < channels_; ++c) {
     const float* sum = work.sums.data() + c * leaf_size;
-    double* to = result.block(leaf, static_cast<int>(c));
-    const double unit = peak * scale_[c];
-    mask.for_each([&](int v) { to[v] = unit * sum[v]; });
+    scale_sums({sum, peak * scale_[c], sum, 0}, mask, work.values.data() + c * leaf_size);
   }
   const bool certain = std::all_of(work.faint.begin(), work.faint.end(), [](float bar) { return bar == 0; });
   if (certain) return;
@@ -179,7 +178,7 @@ void ContactLeaves::run(std::size_t leaf, LeafBuffers& result, ContactWork& work
     if (work.again.empty()) return;
     branches_at_voxel(work.candidates, v, work.at_voxel);
     leave_out_large_sums(v, bar, work);
-    if (!work.again.empty()) sum_in_double(origin, leaf, v, work, result);
+    if (!work.again.empty()) sum_in_double(origin, v, work);
   });
 }
 
@@ -206,15 +205,15 @@ void ContactLeaves::leave_out_large_sums(int offset, const float* bar, ContactWo
   }
 }
 
-void ContactLeaves::sum_in_double(const Coord& origin, std::size_t leaf, int offset, ContactWork& work,
-                                  LeafBuffers& result) const {
-  for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] = 0;
+void ContactLeaves::sum_in_double(const Coord& origin, int offset, ContactWork& work) const {
+  double* const values = work.values.data() + offset;
+  for (const std::size_t c : work.again) values[c * leaf_size] = 0;
   for (const std::int32_t k : work.at_voxel) {
     const std::uint32_t e = work.candidates.entry[static_cast<std::size_t>(k)];
     const std::size_t piece = set_.buckets().point[e];
     const double w = set_.weight(piece, from_middle(voxel_at(origin, offset), e));
     if (!(w > 0)) continue;
-    for (const std::size_t c : work.again) result.block(leaf, static_cast<int>(c))[offset] += set_.value(piece, c) * w;
+    for (const std::size_t c : work.again) values[c * leaf_size] += set_.value(piece, c) * w;
   }
 }
 

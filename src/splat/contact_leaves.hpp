@@ -6,6 +6,7 @@
 #include "grainvdb/leaf_buffers.hpp"
 #include "splat/branch_set.hpp"
 #include "splat/contact_bricks.hpp"
+#include "splat/leaf_consumer.hpp"
 
 namespace grainvdb {
 
@@ -18,6 +19,7 @@ struct ContactWork {
   std::vector<std::int32_t> at_voxel;
   std::vector<std::size_t> again;  // channels of a voxel to be summed in double
   std::vector<float> sums, faint, certain;
+  std::vector<double> values;  // [channel][offset]
   BranchScratch scratch;
 };
 
@@ -29,7 +31,7 @@ class ContactLeaves {
   std::shared_ptr<const Topology> topology() const;
 
   /// The sums by the rules of the set.
-  LeafBuffers sums(std::shared_ptr<const Topology> topology) const;
+  void sums(const Topology& topology, const LeafConsumer& consume) const;
 
  private:
   void find_scales();
@@ -38,9 +40,9 @@ class ContactLeaves {
   void sort_by_rule(ContactWork& work) const;
   LeafMask reached(const Coord& leaf, ContactWork& work) const;
   void add_reach(const Coord& leaf, const LeafMask& window, ContactWork& work, LeafMask& mask) const;
-  void run(std::size_t leaf, LeafBuffers& result, ContactWork& work) const;
+  void run(const Coord& origin, const LeafMask& mask, ContactWork& work) const;
   void leave_out_large_sums(int offset, const float* bar, ContactWork& work) const;
-  void sum_in_double(const Coord& origin, std::size_t leaf, int offset, ContactWork& work, LeafBuffers& result) const;
+  void sum_in_double(const Coord& origin, int offset, ContactWork& work) const;
   Vec3 from_middle(const Coord& voxel, std::size_t entry) const;
   float half_arm() const { return static_cast<float>(set_.half_arm() / kernel_.cutoff()); }
 
@@ -50,7 +52,7 @@ class ContactLeaves {
   std::size_t channels_;
   std::size_t stride_;
   std::vector<double> scale_;         // largest |q| of each channel: keeps single precision in its range
-  Grow<float> records_;        // [entry][arm, values]: 4 (3 + channels) bytes per entry
+  Grow<float> records_;               // [entry][arm, values]: 4 (3 + channels) bytes per entry
   std::vector<std::uint8_t> points_;  // of each entry; empty when all take the same
   std::vector<BranchRule> rules_;     // by number of points
 };

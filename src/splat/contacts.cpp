@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -8,40 +9,74 @@
 #include "splat/splat.hpp"
 
 namespace grainvdb {
-namespace {
 
-LeafBuffers sum_exactly(const Lattice& lattice, const LucyKernel& kernel, const BranchSet& set,
-                        std::shared_ptr<const Topology> topology, std::span<const double> q, int channels) {
-  const auto width = static_cast<std::size_t>(channels);
-  const double h = lattice.voxel();
-  return gather(lattice, set.buckets(), (kernel.cutoff() + set.half_arm()) / h, std::move(topology), channels,
-                [&](std::size_t entry, const LeafWindow& window, double* sums) {
-                  const std::size_t b = set.buckets().point[entry];
-                  const Vec3 arm = set.arm(b);
-                  const double half = 0.5 * std::sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
-                  const double* value = q.data() + b * width;
-                  for_each_voxel(window, entry_index(set.buckets(), entry), (kernel.cutoff() + half) / h,
-                                 [&](int offset, const Vec3& d) {
-                                   const double w = set.weight(b, d);
-                                   double* sum = sums + static_cast<std::size_t>(offset) * width;
-                                   for (std::size_t c = 0; c < width; ++c) sum[c] += value[c] * w;
-                                 });
-                });
-}
+struct ContactSplat::Parts {
+  Parts(const Lattice& of, const LucyKernel& with, const HalfBranches& branches, const BranchValues& values,
+        LineIntegral line_integral)
+      : lattice(of),
+        kernel(with),
+        q(values.q),
+        method(line_integral),
+        set(of, with, branches, values, line_integral),
+        leaves(of, with, set) {}
 
-}  // namespace
+  /// Every integral in double precision, in closed form.
+  void sum_exactly(const Topology& topology, const LeafConsumer& consume) const {
+    const std::size_t width = set.channels();
+    const double h = lattice.voxel();
+    gather_leaves(lattice, set.buckets(), (kernel.cutoff() + set.half_arm()) / h, topology, set.channels(),
+                  [&](std::size_t entry, const LeafWindow& window, double* sums) {
+                    const std::size_t b = set.buckets().point[entry];
+                    const Vec3 arm = set.arm(b);
+                    const double half = 0.5 * std::sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
+                    const double* value = q.data() + b * width;
+                    for_each_voxel(window, entry_index(set.buckets(), entry), (kernel.cutoff() + half) / h,
+                                   [&](int offset, const Vec3& d) {
+                                     const double w = set.weight(b, d);
+                                     double* sum = sums + static_cast<std::size_t>(offset) * width;
+                                     for (std::size_t c = 0; c < width; ++c) sum[c] += value[c] * w;
+                                   });
+                  },
+                  consume);
+  }
 
-LeafBuffers splat_contacts(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
+  const Lattice& lattice;
+  const LucyKernel& kernel;
+  std::span<const double> q;
+  LineIntegral method;
+  BranchSet set;
+  ContactLeaves leaves;
+};
+
+ContactSplat::ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
                            std::span<const double> q, int channels, LineIntegral method) {
   if (channels < 1 || q.size() != branches.size() * static_cast<std::size_t>(channels))
     throw std::invalid_argument("the splat needs one value per branch and channel");
-  if (branches.size() == 0) return {std::make_shared<const Topology>(), channels};
-  const BranchSet set(lattice, kernel, branches, {q, static_cast<std::size_t>(channels)}, method);
-  const ContactLeaves leaves(lattice, kernel, set);
-  auto topology = leaves.topology();
-  if (method.method == LineIntegral::Method::exact)
-    return sum_exactly(lattice, kernel, set, std::move(topology), q, channels);
-  return leaves.sums(std::move(topology));
+  if (branches.size() == 0) return;
+  parts_ = std::make_unique<Parts>(lattice, kernel, branches, BranchValues{q, static_cast<std::size_t>(channels)},
+                                   method);
+  topology_ = parts_->leaves.topology();
+}
+
+ContactSplat::~ContactSplat() = default;
+
+void ContactSplat::sums(const LeafConsumer& consume) const {
+  if (!parts_) return;
+  if (parts_->method.method == LineIntegral::Method::exact) {
+    parts_->sum_exactly(*topology_, consume);
+  } else {
+    parts_->leaves.sums(*topology_, consume);
+  }
+}
+
+LeafBuffers splat_contacts(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
+                           std::span<const double> q, int channels, LineIntegral method) {
+  const ContactSplat splat(lattice, kernel, branches, q, channels, method);
+  LeafBuffers result(splat.topology(), channels);
+  splat.sums([&](std::size_t leaf, const double* values) {
+    std::copy_n(values, static_cast<std::size_t>(channels) * leaf_size, result.block(leaf, 0));
+  });
+  return result;
 }
 
 }  // namespace grainvdb

@@ -12,6 +12,7 @@
 #include "base/parallel.hpp"
 #include "bin/buckets.hpp"
 #include "grainvdb/leaf_buffers.hpp"
+#include "splat/leaf_consumer.hpp"
 
 namespace grainvdb {
 
@@ -108,25 +109,36 @@ std::shared_ptr<const Topology> reached_voxels(const Lattice& lattice, const Buc
 
 /// Adds up the entries at every active voxel: add(entry, window, sums) adds one entry's terms to sums[offset][channel].
 template <class Add>
+void gather_leaves(const Lattice& lattice, const Buckets& buckets, double reach, const Topology& topology,
+                   std::size_t channels, const Add& add, const LeafConsumer& consume) {
+  // Sums are kept [offset][channel] while they grow: the channels of a voxel lie side by side, where [channel][offset]
+  // would put them 4096 bytes apart, into the same cache set.
+  struct Work {
+    std::vector<double> sums, values;
+  };
+  tbb::enumerable_thread_specific<Work> works;
+  parallel_for(topology.leaf_count(), [&](std::size_t l) {
+    Work& work = works.local();
+    work.sums.assign(leaf_size * channels, 0.0);
+    work.values.assign(leaf_size * channels, 0.0);
+    const LeafWindow window(lattice, topology.origin(l));
+    for_each_entry(buckets, window.origin, reach, [&](std::size_t entry) { add(entry, window, work.sums.data()); });
+    topology.mask(l).for_each([&](int offset) {
+      const auto v = static_cast<std::size_t>(offset);
+      for (std::size_t c = 0; c < channels; ++c) work.values[c * leaf_size + v] = work.sums[v * channels + c];
+    });
+    consume(l, work.values.data());
+  });
+}
+
+/// The same, kept in buffers.
+template <class Add>
 LeafBuffers gather(const Lattice& lattice, const Buckets& buckets, double reach,
                    std::shared_ptr<const Topology> topology, int channels, const Add& add) {
   LeafBuffers result(std::move(topology), channels);
-  const Topology& leaves = *result.topology();
   const auto width = static_cast<std::size_t>(channels);
-  // Sums are kept [offset][channel] while they grow: the channels of a voxel lie side by side, where [channel][offset]
-  // would put them 4096 bytes apart, into the same cache set.
-  tbb::enumerable_thread_specific<std::vector<double>> scratch(leaf_size * width);
-  parallel_for(leaves.leaf_count(), [&](std::size_t l) {
-    std::vector<double>& sums = scratch.local();
-    std::fill(sums.begin(), sums.end(), 0.0);
-    const LeafWindow window(lattice, leaves.origin(l));
-    for_each_entry(buckets, window.origin, reach, [&](std::size_t entry) { add(entry, window, sums.data()); });
-    for (int c = 0; c < channels; ++c) {
-      double* block = result.block(l, c);
-      leaves.mask(l).for_each([&](int offset) {
-        block[offset] = sums[static_cast<std::size_t>(offset) * width + static_cast<std::size_t>(c)];
-      });
-    }
+  gather_leaves(lattice, buckets, reach, *result.topology(), width, add, [&](std::size_t l, const double* values) {
+    std::copy_n(values, width * leaf_size, result.block(l, 0));
   });
   return result;
 }

@@ -2,7 +2,6 @@
 /// The splat: a bucketed frame in, channel leaf buffers out. Every leaf is written by one task that adds its terms in a
 /// fixed order, so the result has the same bytes for any number of threads.
 #include <cstddef>
-#include <functional>
 #include <memory>
 #include <span>
 
@@ -10,6 +9,7 @@
 #include "grainvdb/kernel.hpp"
 #include "grainvdb/leaf_buffers.hpp"
 #include "grainvdb/moment.hpp"
+#include "splat/leaf_consumer.hpp"
 
 namespace grainvdb {
 
@@ -29,10 +29,6 @@ LeafBuffers splat_particles_fast(const Lattice& lattice, const LucyKernel& kerne
                                  std::shared_ptr<const Topology> topology, std::span<const double> q,
                                  std::span<const int> weight_of);
 
-/// Takes the sums of one leaf, laid out [channel][offset], 0 where inactive; called once per leaf of the topology, for
-/// different leaves at the same time.
-using LeafConsumer = std::function<void(std::size_t leaf, const double* values)>;
-
 /// Rounds values to single precision, as grids hold them; `count` is a multiple of 8.
 void narrow(const double* from, std::size_t count, float* to);
 
@@ -50,5 +46,22 @@ LeafBuffers splat_particle_gradients(const Lattice& lattice, const LucyKernel& k
 /// are summed by vectors in single precision, which is exact to 1e-5 of the sum of |terms| at every voxel.
 LeafBuffers splat_contacts(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
                            std::span<const double> q, int channels, LineIntegral method);
+
+/// The same in two steps, so that the sums can be handed over leaf by leaf.
+class ContactSplat {
+ public:
+  /// The branches and values must outlive the splat. Throws std::invalid_argument when q has another size.
+  ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
+               std::span<const double> q, int channels, LineIntegral method);
+  ~ContactSplat();
+
+  const std::shared_ptr<const Topology>& topology() const { return topology_; }
+  void sums(const LeafConsumer& consume) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;  // nothing without branches
+  std::shared_ptr<const Topology> topology_ = std::make_shared<const Topology>();
+};
 
 }  // namespace grainvdb
