@@ -1,5 +1,7 @@
 #include "library_paths.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "grainvdb/field_sink.hpp"
@@ -55,23 +57,34 @@ void splat_prepared(const Setting& setting, const Prepared& prepared, std::span<
 
 PreparedLeaves::PreparedLeaves(const Setting& setting, const Prepared& prepared, std::span<const double> q,
                                int channels)
-    : leaves_(prepared.topology->leaf_count()),
+    : leaves_(std::min(most, prepared.topology->leaf_count())),
       channels_(channels),
       voxel_(static_cast<float>(setting.lattice.voxel() / setting.kernel.cutoff())) {
   const Records records(prepared.buckets, q, weights(channels));
   stride_ = records.stride();
   const double reach = setting.kernel.cutoff() / setting.lattice.voxel();
+  const std::size_t step = prepared.topology->leaf_count() / leaves_.size();
   for (std::size_t l = 0; l < leaves_.size(); ++l) {
-    const Coord& origin = prepared.topology->origin(l);
+    const std::size_t leaf = l * step + step / 2;
+    const Coord& origin = prepared.topology->origin(leaf);
     gather_candidates(prepared.buckets, origin, reach, leaves_[l].candidates);
     records.gather(origin, leaves_[l].candidates, leaves_[l].records);
-    leaves_[l].active = prepared.topology->mask(l);
+    leaves_[l].active = prepared.topology->mask(leaf);
+    for (std::size_t k = 0; k < leaves_[l].candidates.count; ++k)
+      leaves_[l].active.for_each([&](int offset) {
+        const std::uint32_t e = leaves_[l].candidates.entry[k];
+        const Coord at = voxel_at(origin, offset);
+        double r2 = 0;
+        for (int a = 0; a < 3; ++a) r2 += std::pow(at[a] - prepared.buckets.index[static_cast<std::size_t>(a)][e], 2);
+        if (r2 < reach * reach) ++pairs_;
+      });
   }
 }
 
 void PreparedLeaves::splat() {
   for (const Leaf& leaf : leaves_)
-    splat_leaf({&leaf.candidates, leaf.records.values.data(), stride_, channels_, voxel_}, leaf.active, sums_);
+    for (int n = 0; n < passes; ++n)
+      splat_leaf({&leaf.candidates, leaf.records.values.data(), stride_, channels_, voxel_}, leaf.active, sums_);
 }
 
 std::vector<ContactMethod> contact_methods() {

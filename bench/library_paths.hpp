@@ -37,19 +37,26 @@ Prepared prepare(const Setting& setting, const Scene& scene);
 /// The kernel loop: candidates, weights and sums of every leaf, each dropped when it is done.
 void splat_prepared(const Setting& setting, const Prepared& prepared, std::span<const double> q, int channels);
 
-/// The innermost part of it: weights and sums of leaves whose candidates and values were collected before.
+/// The loop over candidates alone: picking, weights and sums of some leaves spread over the scene, whose candidates and
+/// values were collected before and lie in the cache, as they do when the splat comes to them.
 class PreparedLeaves {
  public:
   PreparedLeaves(const Setting& setting, const Prepared& prepared, std::span<const double> q, int channels);
+  /// Every leaf `passes` times.
   void splat();
+  std::size_t pairs() const { return passes * pairs_; }
 
  private:
+  static constexpr std::size_t most = 40;
+  static constexpr int passes = 20;
+
   struct Leaf {
     LeafCandidates candidates;
     Records::OfLeaf records;
     LeafMask active;
   };
   std::vector<Leaf> leaves_;
+  std::size_t pairs_ = 0;  // kernel values inside the support, of one pass
   std::size_t stride_ = 0;
   int channels_;
   float voxel_;

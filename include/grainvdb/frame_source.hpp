@@ -61,8 +61,8 @@ class FrameSource {
 
   /// All frames in ascending order of step.
   virtual const std::vector<FrameInfo>& frames() const = 0;
-  /// Of the dumps or of InputSpec::units; where neither names any, a system called "unspecified" whose units are the names of
-  /// the quantities.
+  /// Of the dumps or of InputSpec::units; where neither names any, a system called "unspecified" whose units are the
+  /// names of the quantities.
   virtual const UnitSystem& units() const = 0;
   /// Names of the columns of the particle dumps, as in the first frame's header.
   virtual const std::vector<std::string>& particle_columns() const = 0;
@@ -78,8 +78,8 @@ class FrameSource {
 };
 
 /// Finds the files, recognises their format and indexes the frames. Reads headers only where a file holds one frame.
-/// Throws InputError (no frames, malformed headers, a step twice, units in conflict or unknown), IoError, or ConfigError when
-/// the specification itself cannot be meant.
+/// Throws InputError (no frames, malformed headers, a step twice, units in conflict or unknown), IoError, or
+/// ConfigError when the specification itself cannot be meant.
 std::unique_ptr<FrameSource> open_dumps(const InputSpec& spec);
 
 }  // namespace grainvdb

@@ -74,8 +74,7 @@ Unsorted all_images(const Lattice& lattice, const Columns3& position, double rea
   std::vector<std::size_t> start(points + 1);
   parallel_for(points, [&](std::size_t p) { start[p + 1] = periodic ? image_count(images_of(p)) : 1; });
   std::partial_sum(start.begin(), start.end(), start.begin());
-  if (start.back() > std::numeric_limits<std::uint32_t>::max())
-    throw std::invalid_argument("too many periodic images");
+  if (start.back() > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("too many periodic images");
 
   Unsorted all(start.back());
   parallel_for(points, [&](std::size_t p) {
@@ -131,22 +130,23 @@ Order by_cell(const Unsorted& all) {
   std::iota(order.begin(), order.end(), std::uint32_t{0});
   const std::array<Axis, 3> axis{Axis(key[0].get(), all.count), Axis(key[1].get(), all.count),
                                  Axis(key[2].get(), all.count)};
-  const double cells = static_cast<double>(axis[0].count) * static_cast<double>(axis[1].count) *
-                       static_cast<double>(axis[2].count);
+  const double cells =
+      static_cast<double>(axis[0].count) * static_cast<double>(axis[1].count) * static_cast<double>(axis[2].count);
   if (cells <= 1024 + 4.0 * static_cast<double>(order.size())) {
     std::vector<std::uint32_t> number(order.size());
     parallel_for(number.size(), [&](std::size_t e) {
-      number[e] = static_cast<std::uint32_t>(
-          (axis[0].number(key[0][e]) * axis[1].count + axis[1].number(key[1][e])) * axis[2].count +
-          axis[2].number(key[2][e]));
+      number[e] = static_cast<std::uint32_t>((axis[0].number(key[0][e]) * axis[1].count + axis[1].number(key[1][e])) *
+                                                 axis[2].count +
+                                             axis[2].number(key[2][e]));
     });
-    counting_sort(static_cast<std::size_t>(cells), [&](std::uint32_t e) { return number[e]; }, order);
+    counting_sort(
+        static_cast<std::size_t>(cells), [&](std::uint32_t e) { return number[e]; }, order);
     return order;
   }
   for (std::size_t a = 3; a-- > 0;)
     for (unsigned shift = 0; shift < 32 && ((axis[a].count - 1) >> shift) != 0; shift += 16)
-      counting_sort(std::size_t{1} << 16,
-                    [&](std::uint32_t e) { return (axis[a].number(key[a][e]) >> shift) & 0xffff; }, order);
+      counting_sort(
+          std::size_t{1} << 16, [&](std::uint32_t e) { return (axis[a].number(key[a][e]) >> shift) & 0xffff; }, order);
   return order;
 }
 

@@ -13,17 +13,18 @@ namespace grainvdb {
 /// Entries of one leaf-sized cell are contiguous: cell i holds entries start[i] … start[i+1]-1, in ascending order of
 /// their point's index, so that sums do not depend on threads or on the order of rows in the dump.
 struct Buckets {
-  std::vector<Coord> cells;           ///< leaf origins, ascending
-  std::vector<std::size_t> start;     ///< cells.size() + 1 offsets
-  std::vector<std::uint32_t> point;   ///< index of the point that each entry is an image of
-  Columns3 index;                     ///< position of each entry in index space (whole numbers are voxel centres)
+  std::vector<Coord> cells;          ///< leaf origins, ascending
+  std::vector<std::size_t> start;    ///< cells.size() + 1 offsets
+  std::vector<std::uint32_t> point;  ///< index of the point that each entry is an image of
+  Columns3 index;                    ///< position of each entry in index space (whole numbers are voxel centres)
   /// The same in single precision, relative to the centre of the cell (origin + 3½); followed by `padding` zeros.
   std::array<std::vector<float>, 3> local;
   static constexpr std::size_t padding = 16;  ///< so that vectors may be loaded at any entry
 };
 
 /// Wraps the points along periodic axes and adds every image that lies within `reach` [length] of the stored period.
-/// Positions must be finite and their index must fit 31 bits (the executor checks extents before); throws std::invalid_argument otherwise.
+/// Positions must be finite and their index must fit 31 bits (the executor checks extents before); throws
+/// std::invalid_argument otherwise.
 Buckets bin_points(const Lattice& lattice, const Columns3& position, double reach);
 
 }  // namespace grainvdb

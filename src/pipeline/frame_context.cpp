@@ -323,14 +323,16 @@ void FrameContext::combine_voxels(const Moment& moment, MomentSums& sums) {
 std::vector<Vec3> FrameContext::interpolate_frame(const Moment& numerator, const Moment& denominator) const {
   const Place n = places_.at(numerator.name);
   const Place d = places_.at(denominator.name);
-  return sample_trilinear(lattice_, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel}, frame_.particles.position);
+  return sample_trilinear(lattice_, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel},
+                          frame_.particles.position);
 }
 
 std::vector<Vec3> FrameContext::interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
                                                           std::array<bool, 3> homogeneous) const {
   const Place n = places_.at(numerator.name);
   const Place d = places_.at(denominator.name);
-  return sample_profile(lattice_, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel}, frame_.particles.position, homogeneous);
+  return sample_profile(lattice_, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel},
+                        frame_.particles.position, homogeneous);
 }
 
 std::vector<Vec3> FrameContext::interpolate_mean(const Moment& numerator, const Moment& denominator) const {

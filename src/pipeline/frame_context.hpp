@@ -24,8 +24,8 @@ void apply_selection(const Selection& selection, const Box& box, Particles& part
 
 class FrameContext : public FrameView {
  public:
-  /// Takes the frame. `kept` names the moments whose values other moments of the frame ask for; `means` are those of the
-  /// sweep before, or nullptr.
+  /// Takes the frame. `kept` names the moments whose values other moments of the frame ask for; `means` are those of
+  /// the sweep before, or nullptr.
   FrameContext(Frame frame, const Pipeline& pipeline, const Lattice& lattice, const LucyKernel& kernel,
                const std::set<std::string>& kept, const MomentMeans* means);
 

@@ -132,7 +132,7 @@ constexpr int widest = lanes == 16 ? 24 : 14;
 
 template <bool stride_known, int... c>
 constexpr std::array<Sum, sizeof...(c) + 1> sums_for(std::integer_sequence<int, c...>) {
-  return {nullptr, sum_channels<c + 1, stride_known ? record_stride(c + 1) : 0>...};
+  return {nullptr, sum_channels < c + 1, stride_known ? record_stride(c + 1) : 0 > ...};
 }
 constexpr auto sum_of_record = sums_for<true>(std::make_integer_sequence<int, widest>());
 constexpr auto sum_of_part = sums_for<false>(std::make_integer_sequence<int, widest>());

@@ -44,8 +44,9 @@ HWY_NOINLINE V weigh(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, c
 /// Weights and sums of few channels in one loop: it saves storing the weights, where with more channels the square root
 /// would wait for the sums.
 template <int channels>
-HWY_NOINLINE void weigh_and_sum(const Picked& near, const float* HWY_RESTRICT q, const std::int32_t* HWY_RESTRICT chosen,
-                                std::size_t count, Voxels at, float* HWY_RESTRICT plain, float* HWY_RESTRICT sums) {
+HWY_NOINLINE void weigh_and_sum(const Picked& near, const float* HWY_RESTRICT q,
+                                const std::int32_t* HWY_RESTRICT chosen, std::size_t count, Voxels at,
+                                float* HWY_RESTRICT plain, float* HWY_RESTRICT sums) {
   const float *HWY_RESTRICT x = near.x.data(), *HWY_RESTRICT y = near.y.data(), *HWY_RESTRICT z = near.z.data();
   V all = hn::Zero(d);
   V s[channels];
@@ -161,7 +162,8 @@ void ScaleSums(const ScaledSum& from, const LeafMask& active, double* HWY_RESTRI
 void Narrow(const double* HWY_RESTRICT from, std::size_t count, float* HWY_RESTRICT to) {
   const hn::CappedTag<double, 8> d8;
   const hn::Rebind<float, decltype(d8)> f8;
-  for (std::size_t v = 0; v < count; v += hn::Lanes(d8)) hn::StoreU(hn::DemoteTo(f8, hn::LoadU(d8, from + v)), f8, to + v);
+  for (std::size_t v = 0; v < count; v += hn::Lanes(d8))
+    hn::StoreU(hn::DemoteTo(f8, hn::LoadU(d8, from + v)), f8, to + v);
 }
 
 LeafMask FaintVoxels(const float* sum, float least, const float* plain, float rim, float enough,

@@ -138,8 +138,8 @@ void Cover(const LeafCandidates& all, float h, Picked& near, LeafMask& inside, L
               if (!hn::AllTrue(d, hn::Lt(least, sure))) {
                 if (!picked) PickNear(all, {bx, by, bz, block}, h, near);
                 picked = true;
-                least = NearestTo(near.x.data(), near.y.data(), near.z.data(), near.count, near.count / 2, near.count,
-                                  at);
+                least =
+                    NearestTo(near.x.data(), near.y.data(), near.z.data(), near.count, near.count / 2, near.count, at);
               }
               add_bits(hn::Lt(least, sure), {x, y, z}, inside);
               add_bits(hn::Lt(least, possible), {x, y, z}, perhaps);

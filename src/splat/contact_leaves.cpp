@@ -46,8 +46,7 @@ void ContactLeaves::find_scales() {
     for (std::size_t e = r * run; e < std::min(piece.size(), (r + 1) * run); ++e)
       for (std::size_t c = 0; c < channels_; ++c) of_run[c] = std::max(of_run[c], std::abs(set_.value(piece[e], c)));
   });
-  for (std::size_t n = 0; n < largest.size(); ++n)
-    scale_[n % channels_] = std::max(scale_[n % channels_], largest[n]);
+  for (std::size_t n = 0; n < largest.size(); ++n) scale_[n % channels_] = std::max(scale_[n % channels_], largest[n]);
   for (double& scale : scale_)
     if (scale == 0) scale = 1;
 }

@@ -24,20 +24,21 @@ struct ContactSplat::Parts {
   void sum_exactly(const Topology& topology, const LeafConsumer& consume) const {
     const std::size_t width = set.channels();
     const double h = lattice.voxel();
-    gather_leaves(lattice, set.buckets(), (kernel.cutoff() + set.half_arm()) / h, topology, set.channels(),
-                  [&](std::size_t entry, const LeafWindow& window, double* sums) {
-                    const std::size_t b = set.buckets().point[entry];
-                    const Vec3 arm = set.arm(b);
-                    const double half = 0.5 * std::sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
-                    const double* value = q.data() + b * width;
-                    for_each_voxel(window, entry_index(set.buckets(), entry), (kernel.cutoff() + half) / h,
-                                   [&](int offset, const Vec3& d) {
-                                     const double w = set.weight(b, d);
-                                     double* sum = sums + static_cast<std::size_t>(offset) * width;
-                                     for (std::size_t c = 0; c < width; ++c) sum[c] += value[c] * w;
-                                   });
-                  },
-                  consume);
+    gather_leaves(
+        lattice, set.buckets(), (kernel.cutoff() + set.half_arm()) / h, topology, set.channels(),
+        [&](std::size_t entry, const LeafWindow& window, double* sums) {
+          const std::size_t b = set.buckets().point[entry];
+          const Vec3 arm = set.arm(b);
+          const double half = 0.5 * std::sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
+          const double* value = q.data() + b * width;
+          for_each_voxel(window, entry_index(set.buckets(), entry), (kernel.cutoff() + half) / h,
+                         [&](int offset, const Vec3& d) {
+                           const double w = set.weight(b, d);
+                           double* sum = sums + static_cast<std::size_t>(offset) * width;
+                           for (std::size_t c = 0; c < width; ++c) sum[c] += value[c] * w;
+                         });
+        },
+        consume);
   }
 
   const Lattice& lattice;
@@ -53,8 +54,8 @@ ContactSplat::ContactSplat(const Lattice& lattice, const LucyKernel& kernel, con
   if (channels < 1 || q.size() != branches.size() * static_cast<std::size_t>(channels))
     throw std::invalid_argument("the splat needs one value per branch and channel");
   if (branches.size() == 0) return;
-  parts_ = std::make_unique<Parts>(lattice, kernel, branches, BranchValues{q, static_cast<std::size_t>(channels)},
-                                   method);
+  parts_ =
+      std::make_unique<Parts>(lattice, kernel, branches, BranchValues{q, static_cast<std::size_t>(channels)}, method);
   topology_ = parts_->leaves.topology();
 }
 

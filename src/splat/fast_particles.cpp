@@ -16,9 +16,9 @@
 namespace grainvdb {
 namespace {
 
-// Rounding of positions and squared distances moves the rim of a support by some δ = 6e-8 c, which changes W by a factor
-// 3 δ/(1-r): more than 5e-6 for the terms with 1-r < 0.036, each of which is less than 1.9e-4 W(0). They matter only
-// where a sum has little else, and there the voxel is summed again in double:
+// Rounding of positions and squared distances moves the rim of a support by some δ = 6e-8 c, which changes W by a
+// factor 3 δ/(1-r): more than 5e-6 for the terms with 1-r < 0.036, each of which is less than 1.9e-4 W(0). They matter
+// only where a sum has little else, and there the voxel is summed again in double:
 
 /// where the sum of W/W(0) is less than this (the outermost voxels of the material),
 constexpr double rim = 0.01;
@@ -37,9 +37,9 @@ struct LeafWork {
   Grow<std::int32_t> places;    // of those near such a voxel
   std::vector<LeafMask> faint;  // of each channel
   std::vector<ExactTerm> terms;
-  std::vector<double> exact;         // their sums
-  std::vector<float> limits, few;    // of each channel
-  std::vector<double> values;  // [channel][offset]
+  std::vector<double> exact;       // their sums
+  std::vector<float> limits, few;  // of each channel
+  std::vector<double> values;      // [channel][offset]
 };
 
 class FastSplat {
@@ -79,9 +79,9 @@ class FastSplat {
     const double peak = kernel_.value(0);
     for (std::size_t c = 0; c < channels_; ++c) {
       const std::size_t w = weight(c);
-      scale_sums({sum(work, c), peak * records_.scale(c), sum(work, w),
-                  peak * records_.scale(w) * work.records.reference[c]},
-                 active, work.values.data() + c * leaf_size);
+      scale_sums(
+          {sum(work, c), peak * records_.scale(c), sum(work, w), peak * records_.scale(w) * work.records.reference[c]},
+          active, work.values.data() + c * leaf_size);
     }
   }
 
@@ -104,8 +104,8 @@ class FastSplat {
     work.faint.resize(channels_);
     for (std::size_t c = 0; c < channels_; ++c) {
       const float small_sum = work.records.reference[c] == 0 ? least(work, c) : 0.0F;
-      work.faint[c] = faint_voxels(sum(work, c), small_sum, work.sums.plain.data(), static_cast<float>(rim), enough(c),
-                                   active);
+      work.faint[c] =
+          faint_voxels(sum(work, c), small_sum, work.sums.plain.data(), static_cast<float>(rim), enough(c), active);
       any |= work.faint[c];
     }
     return any;

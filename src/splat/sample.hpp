@@ -9,8 +9,8 @@
 
 namespace grainvdb {
 
-/// A vector ratio on leaves: channels first … first+2 of `numerator` over one channel of `denominator`. Their topologies
-/// may differ.
+/// A vector ratio on leaves: channels first … first+2 of `numerator` over one channel of `denominator`. Their
+/// topologies may differ.
 struct RatioView {
   LeafBlocks numerator;
   int first = 0;

@@ -41,7 +41,7 @@ TEST(Parsimony, PackingFractionAlone) {
 
   EXPECT_THAT(r.report.read.columns_parsed, UnorderedElementsAre("id", "x", "y", "z", "radius"));
   EXPECT_EQ(r.report.read.files_opened.size(), 5U);
-  EXPECT_THAT(r.report.read.files_opened, Not(Contains(HasSubstr("contacts"))));
+  EXPECT_THAT(r.report.read.files_opened, Not(Contains(HasSubstr("/contacts"))));
   EXPECT_EQ(r.report.read.frames_read, 5U);
 
   EXPECT_EQ(r.report.channels, 1U);

@@ -190,7 +190,8 @@ TEST(SampleEdges, NumeratorMayCoverLessThanTheDenominator) {
   const LeafBuffers lower = buffers_of({{0, 0, 0}, {-1, 0, 0}}, 1, [](const Coord&, int) { return 2.0; });
   const auto samples = sample_trilinear(lattice, {upper.blocks(), 0, lower.blocks(), 0}, {{{0.25}, {0.5}, {0.5}}});
   EXPECT_EQ(samples[0], (Vec3{1.5, 1.5, 1.5}));  // ¾ of 4/2, ¼ of 0/2
-  const auto profile = sample_profile(lattice, {upper.blocks(), 0, lower.blocks(), 0}, {{{9}, {0.5}, {0.5}}}, {true, false, false});
+  const auto profile =
+      sample_profile(lattice, {upper.blocks(), 0, lower.blocks(), 0}, {{{9}, {0.5}, {0.5}}}, {true, false, false});
   EXPECT_EQ(profile[0], (Vec3{1, 1, 1}));
 }
 
@@ -198,7 +199,8 @@ TEST(SampleEdges, NumeratorMayCoverMoreThanTheDenominator) {
   const Lattice lattice(1, {0, 0, 0});
   const LeafBuffers upper = buffers_of({{0, 0, 0}, {0, 0, 9}}, 3, [](const Coord&, int) { return 4.0; });
   const LeafBuffers lower = buffers_of({{0, 0, 0}}, 1, [](const Coord&, int) { return 2.0; });
-  const auto profile = sample_profile(lattice, {upper.blocks(), 0, lower.blocks(), 0}, {{{0.5}, {0.5}, {0.5}}}, {true, true, false});
+  const auto profile =
+      sample_profile(lattice, {upper.blocks(), 0, lower.blocks(), 0}, {{{0.5}, {0.5}, {0.5}}}, {true, true, false});
   EXPECT_EQ(profile[0], (Vec3{2, 2, 2}));
 }
 
@@ -211,14 +213,16 @@ TEST(SampleEdges, RefusesPositionsBesideUnreachedVoxels) {
   EXPECT_THROW(sample_profile(lattice, ratio, beside, {false, true, true}), std::logic_error);
   EXPECT_NO_THROW(sample_profile(lattice, ratio, beside, {true, true, true}));
   const LeafBuffers empty(std::make_shared<const Topology>(), 4);
-  EXPECT_THROW(sample_profile(lattice, {empty.blocks(), 1, empty.blocks(), 0}, beside, {true, true, true}), std::logic_error);
+  EXPECT_THROW(sample_profile(lattice, {empty.blocks(), 1, empty.blocks(), 0}, beside, {true, true, true}),
+               std::logic_error);
 }
 
 TEST(SampleEdges, RefusesPositionsThatAreNotFinite) {
   const Lattice lattice(1, {0, 0, 0});
   const LeafBuffers b = buffers_of({{0, 0, 0}}, 4, [](const Coord&, int) { return 1.0; });
   for (double x : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e18})
-    EXPECT_THROW(sample_trilinear(lattice, {b.blocks(), 1, b.blocks(), 0}, {{{x}, {0.5}, {0.5}}}), std::invalid_argument);
+    EXPECT_THROW(sample_trilinear(lattice, {b.blocks(), 1, b.blocks(), 0}, {{{x}, {0.5}, {0.5}}}),
+                 std::invalid_argument);
 }
 
 TEST(SampleEdges, NoPositionsGiveNoSamples) {
