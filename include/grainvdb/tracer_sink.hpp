@@ -44,6 +44,7 @@ struct TracerSample {
   std::vector<double> gradient_number;     ///< K = |∇u|Δt of that step [1]; empty when not recorded
   std::vector<std::vector<float>> fields;  ///< per recorded field, [tracer][component]
   std::vector<TracerStop> stop;
+  std::vector<double> stop_time;  ///< until when a tracer could be followed; NaN while it moves
 };
 
 /// begin, then write once per sample in order of time, then commit. Nothing appears under the final name before commit
