@@ -21,12 +21,16 @@ void redirect(int descriptor, const std::string& path) {
 
 }  // namespace
 
+std::string command_path() {
+  return GRAINVDB_COMMAND;
+}
+
 CommandResult run_command(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
                           const std::string& out_path, const std::function<void(pid_t)>& meanwhile) {
   const Folder captured;
   const std::string out = out_path.empty() ? (captured / "out").string() : out_path;
   const std::string err = (captured / "err").string();
-  std::vector<std::string> words{GRAINVDB_COMMAND};
+  std::vector<std::string> words{command_path()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -15,6 +15,9 @@ struct CommandResult {
   std::string err;
 };
 
+/// The command as it was built.
+std::string command_path();
+
 /// Runs `grainvdb arguments…` in a folder. `meanwhile` is called with the process while it runs. Its standard output
 /// goes to `out_path` where that is given.
 CommandResult run_command(const std::vector<std::string>& arguments, const std::filesystem::path& folder,

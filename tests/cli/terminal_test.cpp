@@ -20,7 +20,7 @@ using testing::HasSubstr;
 // What the command prints at a terminal of its own; nothing where the system has no terminals to give.
 std::optional<std::string> printed_at_terminal(const std::vector<std::string>& arguments,
                                                const std::filesystem::path& folder) {
-  std::vector<std::string> words{GRAINVDB_COMMAND};
+  std::vector<std::string> words{command_path()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -11,12 +11,13 @@
 #include "grainvdb/pipeline.hpp"
 #include "support/reference.hpp"
 #include "support/run_in_memory.hpp"
+#include "support/sample_dumps.hpp"
 
 namespace grainvdb::testing {
 namespace {
 
 std::string folder() {
-  return GRAINVDB_SOURCE_DIR "/pipelines";
+  return in_repository("pipelines");
 }
 
 /// Mean over the frames of ΣV of the material.
