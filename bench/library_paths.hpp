@@ -52,7 +52,7 @@ class PreparedLeaves {
 
   struct Leaf {
     LeafCandidates candidates;
-    Records::OfLeaf records;
+    LeafRecords records;
     LeafMask active;
   };
   std::vector<Leaf> leaves_;

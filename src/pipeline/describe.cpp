@@ -30,6 +30,8 @@ const char* kind_name(Moment::Kind kind) {
       return "splat of particles";
     case Moment::Kind::particle_gradients:
       return "splat of particles with the kernel's gradient";
+    case Moment::Kind::second_moments:
+      return "splat of particles with the second moments of velocity and place";
     case Moment::Kind::contacts:
       return "splat of contacts";
     case Moment::Kind::voxels:

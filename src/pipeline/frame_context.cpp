@@ -14,6 +14,7 @@
 #include "grainvdb/stage.hpp"
 #include "pipeline/number.hpp"
 #include "splat/sample.hpp"
+#include "splat/second_moments.hpp"
 #include "splat/splat.hpp"
 
 namespace grainvdb {
@@ -158,7 +159,8 @@ void FrameContext::run_pass(const std::vector<MomentPtr>& pass, MomentSums& sums
   for (const MomentPtr& m : pass) {
     if (m->kind == Moment::Kind::voxels) continue;
     const auto same = [&](const Group& g) {
-      return g[0]->kind == m->kind && g[0]->line_integral == m->line_integral && g[0]->in_double == m->in_double;
+      return g[0]->kind == m->kind && m->kind != Moment::Kind::second_moments &&
+             g[0]->line_integral == m->line_integral && g[0]->in_double == m->in_double;
     };
     const auto it = std::find_if(groups.begin(), groups.end(), same);
     if (it == groups.end()) {
@@ -223,7 +225,8 @@ void FrameContext::splat_group(const Group& group, MomentSums& sums) {
     bucket_particles();
     check_memory(topology_->leaf_count(), channels, sums);
   }
-  if (contacts || (group[0]->kind == Moment::Kind::particles && !group[0]->in_double)) {
+  const bool in_double = group[0]->kind == Moment::Kind::particle_gradients || group[0]->in_double;
+  if (contacts || !in_double) {
     splat_leaves(group, values, sums);
   } else {
     keep(splat_in_double(group, values), group, sums);
@@ -243,6 +246,8 @@ void FrameContext::splat_leaves(const Group& group, const Values& values, Moment
                              group[0]->line_integral);
     check_memory(splat.topology()->leaf_count(), 0, sums);
     splat.sums(consumer(group, splat.topology(), sums));
+  } else if (group[0]->kind == Moment::Kind::second_moments) {
+    splat_second_moments(lattice_, kernel_, *buckets_, *topology_, values.q, consumer(group, topology_, sums));
   } else {
     splat_particles_fast(lattice_, kernel_, *buckets_, *topology_, values.q, values.weight_of,
                          consumer(group, topology_, sums));

@@ -53,12 +53,10 @@ void check_dense_size(const Topology::Bounds& bounds, const Pipeline& pipeline) 
                     "Choose larger voxels, leave stray particles out with select, or raise the limit"});
 }
 
-/// Fields that can be undefined are written with the reasons.
-bool writes_mask(const Plan& plan, const Pipeline& pipeline) {
-  return std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage* s) {
-    const bool wanted = std::find(pipeline.fields.begin(), pipeline.fields.end(), s->name) != pipeline.fields.end();
-    return wanted && (!s->additive || !s->compute);
-  });
+/// Fields that can be undefined, or are made of such fields, are written with the reasons.
+bool writes_mask(const Plan& plan) {
+  return std::any_of(plan.stages.begin(), plan.stages.end(),
+                     [](const Stage* s) { return !s->additive || !s->compute; });
 }
 
 std::vector<const SparseField*> wanted_fields(const Pipeline& pipeline, const DerivedFields& derived) {
@@ -96,7 +94,7 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
           {"not_needed", lines(plan.not_needed, plain)}};
 }
 
-OutputLayout layout_of(const Pipeline& pipeline, const Plan& plan, const FrameSource& source, const Lattice& lattice,
+OutputLayout layout_of(const Plan& plan, const FrameSource& source, const Lattice& lattice,
                        const Topology::Bounds& bounds, std::size_t times,
                        const std::vector<const SparseField*>& fields) {
   OutputLayout layout(lattice);
@@ -104,7 +102,7 @@ OutputLayout layout_of(const Pipeline& pipeline, const Plan& plan, const FrameSo
   layout.last = bounds.last;
   layout.time_count = times;
   for (const SparseField* f : fields) layout.fields.push_back(f->meta());
-  layout.has_mask = writes_mask(plan, pipeline);
+  layout.has_mask = writes_mask(plan);
   layout.length_unit = source.units().length;
   layout.time_unit = source.frames().front().time ? source.units().time : "step";
   return layout;
@@ -169,10 +167,9 @@ RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& 
         if (!bounds) bounds = moments.means.topology()->bounds();
         if (!bounds) refuse_without_material(source, wanted);
         check_dense_size(*bounds, pipeline);
-        for (const auto& sink : sinks)
-          sink->begin(layout_of(pipeline, plan, source, lattice, *bounds, windows, fields));
+        for (const auto& sink : sinks) sink->begin(layout_of(plan, source, lattice, *bounds, windows, fields));
       }
-      const Mask* mask = writes_mask(plan, pipeline) ? &derived.mask : nullptr;
+      const Mask* mask = writes_mask(plan) ? &derived.mask : nullptr;
       for (const auto& sink : sinks) sink->write(moments.time, fields, mask);
     });
 

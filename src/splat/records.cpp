@@ -105,10 +105,13 @@ Records::Records(const Buckets& buckets, std::span<const double> q, std::span<co
     : buckets_(buckets),
       channels_(weight_of.size()),
       stride_((weight_of.size() + 3) / 4 * 4),
+      weight_(channels_),
       weighed_(by_weight(weight_of)),
       scale_(channels_, 0.0),
       reference_(buckets.cells.size() * channels_),
       spread_(buckets.cells.size() * channels_) {
+  for (std::size_t c = 0; c < channels_; ++c)
+    weight_[c] = weight_of[c] < 0 ? c : static_cast<std::size_t>(weight_of[c]);
   for (std::size_t n = 0; n < q.size(); n += channels_)
     for (std::size_t c = 0; c < channels_; ++c) scale_[c] = std::max(scale_[c], std::abs(q[n + c]));
   std::vector<double> inverse(channels_);
@@ -179,7 +182,7 @@ double Records::leaf_reference(const Coord& leaf, const LeafCandidates& candidat
   return mean;
 }
 
-void Records::gather(const Coord& leaf, const LeafCandidates& candidates, OfLeaf& out) const {
+void Records::gather(const Coord& leaf, const LeafCandidates& candidates, LeafRecords& out) const {
   float* const to = out.values.room(candidates.count * stride_);
   out.reference.assign(channels_, 0.0);
   out.largest.assign(stride_, 0.0F);

@@ -89,6 +89,13 @@ TEST(FieldDescriptions, PassesAndSweeps) {
   const StageSettings instantaneous = settings_with(registry, {{"kinetic_stress", "reference", "instantaneous"}});
   EXPECT_EQ(deviation("kinetic_stress", instantaneous)->frame_needs.size(), 2U);
   EXPECT_THAT(deviation("kinetic_stress", instantaneous)->mean_needs, IsEmpty());
+  const StageSettings moments = settings_with(registry, {{"kinetic_stress", "reference", "time_mean_moments"}});
+  EXPECT_EQ(deviation("kinetic_stress", moments)->kind, Moment::Kind::second_moments);
+  for (const MomentPtr& m : moments_of(registry, "kinetic_stress", moments)) {
+    EXPECT_THAT(m->frame_needs, IsEmpty());
+    EXPECT_THAT(m->mean_needs, IsEmpty());
+  }
+  EXPECT_THAT(registry.find("kinetic_stress")->needs(moments).fields, ElementsAre("velocity_gradient"));
   const StageSettings one_pass = settings_with(registry, {{"temperature", "mode", "one_pass"}});
   EXPECT_EQ(deviation("temperature", one_pass)->kind, Moment::Kind::voxels);
 
@@ -116,6 +123,7 @@ TEST(FieldDescriptions, NamesTellMomentsApart) {
     add("contact_stress", {{"contact_stress", "line_integral", "gauss" + std::to_string(n)}});
   add("kinetic_stress", {});
   add("kinetic_stress", {{"kinetic_stress", "reference", "instantaneous"}});
+  add("kinetic_stress", {{"kinetic_stress", "reference", "time_mean_moments"}});
   add("velocity", {});
   add("velocity", {{"velocity", "weighting", "mass"}});
   EXPECT_EQ(names.size(), variants);
