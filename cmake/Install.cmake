@@ -28,4 +28,5 @@ install(FILES ${PROJECT_BINARY_DIR}/grainvdbConfig.cmake ${PROJECT_BINARY_DIR}/g
 
 # Side by side as in the source tree, so that the installed pipelines find their dumps.
 install(DIRECTORY pipelines sample_dumps DESTINATION ${GRAINVDB_DATA_DIR})
+install(DIRECTORY python/grainvdb DESTINATION ${GRAINVDB_DATA_DIR}/python FILES_MATCHING PATTERN "*.py" PATTERN "py.typed")
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -20,6 +20,7 @@ constexpr const char* footer = R"(Examples:
   grainvdb validate pipelines/shear_cell.yaml
   grainvdb run pipelines/shear_cell.yaml --output result
   grainvdb run pipelines/shear_cell.yaml --set kernel.cutoff=3e-3 --frames ::2
+  grainvdb report result
 
 Exit codes:
   0    done
@@ -85,6 +86,7 @@ int run(int argc, char** argv) {
   add_stages(app);
   add_graph(app);
   add_schema(app);
+  add_report(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help and --version

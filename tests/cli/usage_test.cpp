@@ -18,7 +18,7 @@ CommandResult grainvdb(const std::vector<std::string>& arguments) {
 }
 
 TEST(Usage, EveryCommandHasHelpWithExamples) {
-  for (const char* command : {"run", "info", "validate", "stages", "graph", "schema"}) {
+  for (const char* command : {"run", "info", "validate", "stages", "graph", "schema", "report"}) {
     const CommandResult result = grainvdb({command, "--help"});
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_THAT(result.out, AllOf(HasSubstr("Examples:\n  grainvdb " + std::string(command)), HasSubstr("--help")));
@@ -29,7 +29,7 @@ TEST(Usage, EveryCommandHasHelpWithExamples) {
 TEST(Usage, HelpDocumentsCommandsAndExitCodes) {
   const CommandResult result = grainvdb({"--help"});
   EXPECT_EQ(result.exit_code, 0);
-  for (const char* word : {"run", "info", "validate", "stages", "graph", "schema", "Exit codes:", "  0 ", "  1 ",
+  for (const char* word : {"run", "info", "validate", "stages", "graph", "schema", "report", "Exit codes:", "  0 ", "  1 ",
                            "  2 ", "  3 ", "  4 ", "  5 ", "  130 "})
     EXPECT_THAT(result.out, HasSubstr(word));
 }

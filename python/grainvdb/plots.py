@@ -1,0 +1,191 @@
+"""Pictures of results. Every function draws into axes that it is given or makes, and returns them."""
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+
+from . import laws
+from .fields import AXES, Fields
+from .tracers import Tracers
+
+
+
+def label(name: str, unit: str) -> str:
+    """A name for people: `gd_over_dv`, `1` gives `gd over dv`; `phi_error` keeps its unit."""
+    words = name.replace("_", " ")
+    return words if unit in ("", "1") else f"{words} [{unit}]"
+
+
+def scalar(fields: Fields, name: str, time: int = -1) -> tuple[np.ndarray, str]:
+    """A field as one number per voxel with its label: the magnitude of a vector, a third of the trace of a tensor."""
+    values = fields.values(name, time).astype(float)
+    unit = fields.unit(name)
+    if values.ndim == 3:
+        return values, label(name, unit)
+    if values.shape[3] == 9:
+        return values[..., [0, 4, 8]].mean(axis=3), label(f"mean {name}", unit)
+    return np.linalg.norm(values[..., :3], axis=3), label(f"|{name}|", unit)
+
+
+def slice_axis(fields: Fields) -> str:
+    """The axis to cut: that with the fewest voxels, y where several have."""
+    return min("yxz", key=lambda axis: len(fields.axis(axis)))
+
+
+def middle(fields: Fields, axis: str) -> int:
+    """The layer to cut at: the fullest one by phi, else the middle."""
+    if "phi" in fields:
+        phi = fields.values("phi", -1)
+        others = tuple(k for k, name in enumerate("zyx") if name != axis)
+        filled = np.nansum(phi, axis=others)
+        best = np.flatnonzero(filled > 0.98 * filled.max())
+        return int(best[len(best) // 2])
+    return len(fields.axis(axis)) // 2
+
+
+def field_slice(fields: Fields, name: str, axis: str | None = None, index: int | None = None, time: int = -1,
+                ax: Axes | None = None) -> Axes:
+    """One layer of voxels as a picture, with arrows for vectors; blank where the field is undefined."""
+    axis = axis or slice_axis(fields)
+    index = middle(fields, axis) if index is None else index
+    ax = ax or plt.subplots()[1]
+    across, up = [a for a in AXES if a != axis]
+    values, text = scalar(fields, name, time)
+    shown = np.ma.masked_invalid(np.take(values, index, axis=2 - AXES.index(axis)))
+    half = fields.voxel / 2
+    ends = [fields.axis(a)[k] + s * half for a in (across, up) for k, s in ((0, -1), (-1, 1))]
+    finite = shown.compressed()
+    low, high = np.percentile(finite, [1, 99]) if finite.size else (0.0, 1.0)
+    signed = low < 0 < high
+    bound = max(abs(low), abs(high))
+    image = ax.imshow(shown, origin="lower", extent=ends, aspect="equal", cmap="RdBu_r" if signed else "viridis",
+                      vmin=-bound if signed else low, vmax=bound if signed else high, interpolation="nearest")
+    ax.figure.colorbar(image, ax=ax, shrink=0.85)
+    vectors = fields.values(name, time)
+    if vectors.ndim == 4 and vectors.shape[3] == 3:
+        _arrows(fields, ax, np.take(vectors, index, axis=2 - AXES.index(axis)), across, up)
+    ax.set(xlabel=label(across, fields.unit(across)), ylabel=label(up, fields.unit(up)), title=text)
+    return ax
+
+
+def _arrows(fields: Fields, ax: Axes, vectors: np.ndarray, across: str, up: str) -> None:
+    step = max(1, max(vectors.shape[:2]) // 14)
+    part = vectors[step // 2::step, step // 2::step]
+    ax.quiver(fields.axis(across)[step // 2::step], fields.axis(up)[step // 2::step], part[..., AXES.index(across)],
+              part[..., AXES.index(up)], color="white", pivot="middle", width=0.006)
+
+
+def profile(fields: Fields, name: str, axis: str = "z", time: int = -1, ax: Axes | None = None) -> Axes:
+    """The mean over each layer across an axis, with the spread of the voxels as a band and, where the result has
+    `<name>_error`, the standard error of the mean as bars (the errors of neighbouring voxels taken as one)."""
+    ax = ax or plt.subplots()[1]
+    others = tuple(k for k, other in enumerate("zyx") if other != axis)
+    values, text = scalar(fields, name, time)
+    layers = np.ma.masked_invalid(values)
+    mean, spread = layers.mean(axis=others), layers.std(axis=others)
+    at = fields.axis(axis)
+    ax.fill_betweenx(at, mean - spread, mean + spread, alpha=0.2, linewidth=0)
+    error = f"{name}_error"
+    if error in fields and fields.values(error, time).ndim == 3:
+        bars = np.ma.masked_invalid(fields.values(error, time).astype(float)).mean(axis=others)
+        ax.errorbar(mean, at, xerr=bars, fmt="o-", markersize=3, linewidth=1, capsize=2)
+    else:
+        ax.plot(mean, at, "o-", markersize=3, linewidth=1)
+    ax.set(xlabel=text, ylabel=label(axis, fields.unit(axis)))
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def against(fields: Fields, x: str, y: str, time: int = -1, ax: Axes | None = None) -> Axes:
+    """One field against another, a point per voxel where both are defined, coloured by height."""
+    ax = ax or plt.subplots()[1]
+    (a, x_label), (b, y_label) = scalar(fields, x, time), scalar(fields, y, time)
+    height = np.broadcast_to(fields.axis("z")[:, None, None], a.shape)
+    both = np.isfinite(a) & np.isfinite(b)
+    points = ax.scatter(a[both], b[both], c=height[both], s=4, linewidth=0, alpha=0.6, rasterized=True)
+    ax.figure.colorbar(points, ax=ax, label=label("z", fields.unit("z")))
+    if both.any():
+        low, high = np.percentile(b[both], [0.5, 99.5])
+        ax.set_ylim(min(0.0, low), high * 1.1 if high > 0 else None)
+    ax.set(xlabel=x_label, ylabel=y_label)
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def fluidity_against_phi(fields: Fields, time: int = -1, ax: Axes | None = None,
+                         fitted: tuple[float, float, float, float] | None = None) -> Axes:
+    """g d/δv against φ with the law (3) and, when given, fitted parameters of (A20)."""
+    ax = against(fields, "phi", "gd_over_dv", time, ax)
+    low, high = ax.get_xlim()
+    phi = np.linspace(low, high, 400)
+    ax.plot(phi, laws.fluidity(phi, *laws.FLUIDITY_3), "k-", linewidth=1.2, label="(3)")
+    if fitted:
+        ax.plot(phi, laws.fluidity(phi, *fitted), "r--", linewidth=1.2, label="(A20), fitted")
+    top = np.nanmax([ax.get_ylim()[1], 2.2])
+    ax.set(xlim=(low, high), ylim=(0, top), ylabel="g d/δv")
+    ax.legend()
+    return ax
+
+
+def friction_against_inertial(fields: Fields, time: int = -1, ax: Axes | None = None) -> Axes:
+    """μ against I with the law μ(I)."""
+    ax = against(fields, "inertial_number", "mu", time, ax)
+    values = fields.values("inertial_number", time)
+    positive = values[np.isfinite(values) & (values > 0)]
+    if positive.size:
+        low, high = np.percentile(positive, [1, 100])
+        inertial = np.geomspace(low, high, 200)
+        ax.plot(inertial, laws.friction(inertial, *laws.INERTIAL), "k-", linewidth=1.2, label="μ(I) = {} … {}, I₀ = {}".format(*laws.INERTIAL))
+        ax.set(xscale="log", xlim=(low, high))
+        ax.legend()
+    ax.set(xlabel="inertial number I", ylabel="μ")
+    return ax
+
+
+def mask_reasons(fields: Fields, time: int = -1, ax: Axes | None = None) -> Axes:
+    """How many voxels carry each reason of the mask."""
+    ax = ax or plt.subplots()[1]
+    flags = fields.mask(time)
+    counts = [(r.name.replace("_", " "), int(np.count_nonzero(flags & r.flag))) for r in fields.reasons if r.name != "outside"]
+    counts = [(name, count) for name, count in counts if count]
+    if not counts:
+        ax.text(0.5, 0.5, "every field has a value wherever there is material", ha="center", va="center")
+        ax.set_axis_off()
+        return ax
+    names, numbers = zip(*reversed(counts))
+    bars = ax.barh(names, numbers, color="0.5")
+    ax.bar_label(bars, padding=3)
+    ax.set(xlabel="voxels")
+    ax.margins(x=0.15)
+    return ax
+
+
+def tracer_paths(tracers: Tracers, ax: Axes | None = None, across: str = "x", up: str = "z", colour: str = "strain") -> Axes:
+    """Paths of tracers, coloured by what was recorded along them."""
+    ax = ax or plt.subplots()[1]
+    position = tracers.positions()
+    moving = tracers.moving
+    a, b = (np.where(moving, position[..., AXES.index(axis)], np.nan) for axis in (across, up))
+    ax.plot(a, b, color="0.8", linewidth=0.6, zorder=1)
+    if colour in tracers.names and tracers.values(colour).ndim == 2:
+        points = ax.scatter(a, b, c=tracers.values(colour), s=5, linewidth=0, zorder=2)
+        ax.figure.colorbar(points, ax=ax, label=label(colour, tracers.unit(colour)))
+    ax.plot(a[0], b[0], "k.", markersize=3, zorder=3)
+    ax.set(xlabel=label(across, tracers.unit("position")), ylabel=label(up, tracers.unit("position")), aspect="equal")
+    return ax
+
+
+def tracer_history(tracers: Tracers, name: str, ax: Axes | None = None) -> Axes:
+    """What was recorded against time: every tracer thin, the median thick."""
+    ax = ax or plt.subplots()[1]
+    values = tracers.values(name).astype(float)
+    if values.ndim == 3:
+        values = np.linalg.norm(values, axis=2)
+    values = np.where(tracers.moving, values, np.nan)
+    ax.plot(tracers.times, values, color="0.75", linewidth=0.5)
+    some = np.isfinite(values).any(axis=1)
+    ax.plot(tracers.times[some], np.nanmedian(values[some], axis=1), "k-", linewidth=1.5)
+    ax.set(xlabel=label("time", tracers.time_unit), ylabel=label(name, tracers.unit(name)))
+    ax.grid(alpha=0.3)
+    return ax

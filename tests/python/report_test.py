@@ -1,0 +1,93 @@
+import base64
+import html.parser
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+
+from grainvdb import laws
+from support import COMMAND, result, write_tracers
+
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+class _Page(html.parser.HTMLParser):
+    """What a page shows, and whatever it would load from elsewhere."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.headings, self.pictures, self.loads, self._in_heading = [], [], [], False
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self._in_heading = tag == "h2"
+        if tag == "img":
+            self.pictures.append(attributes["src"])
+        if tag in ("script", "link") or str(attributes.get("src", "data:")).split(":")[0] != "data":
+            self.loads.append((tag, attributes))
+
+    def handle_data(self, data):
+        if self._in_heading:
+            self.headings.append(data)
+            self._in_heading = False
+
+
+def report(folder, *options):
+    return subprocess.run([COMMAND, "report", folder, *options], capture_output=True, text=True, check=False)
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        shutil.copy(result() / "fields.hdf", self.folder)
+
+    def test_page_holds_everything(self):
+        write_tracers(self.folder / "tracers.h5")
+        done = report(self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = _Page((self.folder / "report/report.html").read_text())
+        self.assertEqual(page.headings, ["Overview", "Slices", "Profiles", "Rheology", "Where fields have no value", "Fields", "Tracers", "Provenance"])
+        self.assertEqual(page.loads, [])
+        shown = [base64.b64decode(source.split(",")[1]) for source in page.pictures]
+        self.assertTrue(all(picture.startswith(PNG) for picture in shown))
+        files = {path.name: path.read_bytes() for path in (self.folder / "report").glob("*.png")}
+        self.assertEqual(sorted(files.values()), sorted(shown))
+        self.assertEqual(set(re.findall(r"wrote .*/(\S+)", done.stdout)), set(files) | {"report.html"})
+
+    def test_the_same_result_gives_the_same_page(self):
+        pages = []
+        for name in ("one", "two"):
+            self.assertEqual(report(self.folder, "--output", self.folder / name).returncode, 0)
+            pages.append((self.folder / name / "report.html").read_bytes())
+        self.assertEqual(*pages)
+
+    def test_says_what_is_wrong(self):
+        with tempfile.TemporaryDirectory() as empty:
+            done = report(empty)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("neither fields.hdf nor tracers.h5", done.stderr)
+        self.assertEqual(report(self.folder, "--axis", "w").returncode, 1)
+        (self.folder / "fields.hdf").write_bytes(b"cut short")
+        done = report(self.folder)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("not an HDF5 file", done.stderr)
+        self.assertNotIn("Traceback", done.stderr)
+
+
+class Laws(unittest.TestCase):
+    def test_published_values(self):
+        """The values of (3) and of mu(I) that are printed with them, to their last digit."""
+        np.testing.assert_allclose(laws.fluidity(np.array([0.50, 0.55, 0.58, 0.60, 0.62]), *laws.FLUIDITY_3),
+                                   [1.9801, 1.9486, 1.7415, 1.0930, 0.2942], atol=5e-5)
+        np.testing.assert_allclose(laws.friction(np.array([0.01, 0.1, 0.2, 1]), *laws.INERTIAL), [0.1405, 0.2633, 0.335, 0.4783], atol=5e-5)
+
+
+if __name__ == "__main__":
+    unittest.main()
