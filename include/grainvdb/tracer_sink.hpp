@@ -30,6 +30,7 @@ struct TracerLayout {
   Box box;                        ///< of the simulation
   std::vector<FieldMeta> fields;  ///< recorded along the way, in this order
   std::string length_unit, time_unit;  ///< time_unit is "step" where the dump has no time
+  std::string unit_system;             ///< as UnitSystem::name; "unspecified" where the dump names none
 };
 
 /// All tracers at one time. Every vector has one entry per tracer; undefined values are NaN.
@@ -58,5 +59,13 @@ class TracerSink {
   /// The files that commit leaves, for the user.
   virtual std::vector<std::string> files() const = 0;
 };
+
+struct TracerSinkInfo {
+  std::string name;  ///< as in the pipeline file's trace.formats
+  std::string description;
+  std::unique_ptr<TracerSink> (*make)(const std::string& directory);
+};
+/// The formats that histories can be written in.
+const std::vector<TracerSinkInfo>& tracer_sink_registry();
 
 }  // namespace grainvdb

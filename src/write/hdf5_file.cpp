@@ -47,6 +47,10 @@ hid_t hdf5_type<double>() {
   return H5T_NATIVE_DOUBLE;
 }
 template <>
+hid_t hdf5_type<std::uint8_t>() {
+  return H5T_NATIVE_UINT8;
+}
+template <>
 hid_t hdf5_type<std::int32_t>() {
   return H5T_NATIVE_INT32;
 }
@@ -123,6 +127,12 @@ void Hdf5File::create_group(const std::string& path) {
   check(group.close(), "close", path);
 }
 
+void Hdf5File::link(const std::string& path, const std::string& existing) {
+  const Quiet quiet;
+  check(H5Lcreate_hard(file_->id(), existing.c_str(), file_->id(), path.c_str(), H5P_DEFAULT, H5P_DEFAULT), "create",
+        path);
+}
+
 Hdf5Handle Hdf5File::dataset_properties() const {
   auto properties = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "create", "a dataset");
   check(H5Pset_obj_track_times(properties.id(), false), "create", "a dataset");
@@ -140,17 +150,17 @@ const Hdf5Handle& Hdf5File::dataset(const std::string& path) const {
   return datasets_.at(path);
 }
 
-void Hdf5File::add_dataset(const std::string& path, hid_t type, const Hdf5Dims& dims, const Hdf5Handle& properties) {
-  const auto space = checked(make_space(dims), H5Sclose, "create", path);
+void Hdf5File::add_dataset(const std::string& path, hid_t type, hid_t space, const Hdf5Handle& properties) {
   datasets_.emplace(
-      path, checked(H5Dcreate2(file_->id(), path.c_str(), type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
+      path, checked(H5Dcreate2(file_->id(), path.c_str(), type, space, H5P_DEFAULT, properties.id(), H5P_DEFAULT),
                     H5Dclose, "create", path));
 }
 
 template <class T>
 void Hdf5File::create_dataset(const std::string& path, const Hdf5Dims& dims) {
   const Quiet quiet;
-  add_dataset(path, hdf5_type<T>(), dims, dataset_properties());
+  const auto space = checked(make_space(dims), H5Sclose, "create", path);
+  add_dataset(path, hdf5_type<T>(), space.id(), dataset_properties());
 }
 
 template <class T>
@@ -162,7 +172,41 @@ void Hdf5File::create_chunked_dataset(const std::string& path, const Hdf5Dims& d
   check(H5Pset_fill_value(p, hdf5_type<T>(), &fill), "create", path);
   check(H5Pset_fill_time(p, H5D_FILL_TIME_IFSET), "create", path);
   check(H5Pset_alloc_time(p, H5D_ALLOC_TIME_INCR), "create", path);
-  add_dataset(path, hdf5_type<T>(), dims, properties);
+  const auto space = checked(make_space(dims), H5Sclose, "create", path);
+  add_dataset(path, hdf5_type<T>(), space.id(), properties);
+}
+
+template <class T>
+void Hdf5File::create_growing_dataset(const std::string& path, const Hdf5Dims& row, const Hdf5Dims& chunk) {
+  const Quiet quiet;
+  const auto properties = dataset_properties();
+  check(H5Pset_chunk(properties.id(), static_cast<int>(chunk.size()), chunk.data()), "create", path);
+  Hdf5Dims dims{0}, most{H5S_UNLIMITED};
+  dims.insert(dims.end(), row.begin(), row.end());
+  most.insert(most.end(), row.begin(), row.end());
+  const auto space =
+      checked(H5Screate_simple(static_cast<int>(dims.size()), dims.data(), most.data()), H5Sclose, "create", path);
+  add_dataset(path, hdf5_type<T>(), space.id(), properties);
+}
+
+template <class T>
+void Hdf5File::append_row(const std::string& path, std::span<const T> values) {
+  const Quiet quiet;
+  const hid_t set = dataset(path).id();
+  Hdf5Dims dims;
+  {
+    const auto space = checked(H5Dget_space(set), H5Sclose, "write", path);
+    dims.resize(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(space.id()), "write", path)));
+    check(H5Sget_simple_extent_dims(space.id(), dims.data(), nullptr), "write", path);
+  }
+  Hdf5Dims start(dims.size(), 0), count = dims;
+  start.front() = dims.front()++;
+  count.front() = 1;
+  check(H5Dset_extent(set, dims.data()), "write", path);
+  const auto all = checked(H5Dget_space(set), H5Sclose, "write", path);
+  check(H5Sselect_hyperslab(all.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr), "write", path);
+  const auto row = checked(make_space(count), H5Sclose, "write", path);
+  check(H5Dwrite(set, hdf5_type<T>(), row.id(), all.id(), H5P_DEFAULT, values.data()), "write", path);
 }
 
 template <class T>
@@ -250,6 +294,16 @@ void Hdf5File::fixed_text_attribute(const std::string& object, const std::string
 template void Hdf5File::create_dataset<double>(const std::string&, const Hdf5Dims&);
 template void Hdf5File::create_dataset<std::int32_t>(const std::string&, const Hdf5Dims&);
 template void Hdf5File::create_dataset<std::int64_t>(const std::string&, const Hdf5Dims&);
+template void Hdf5File::create_growing_dataset<float>(const std::string&, const Hdf5Dims&, const Hdf5Dims&);
+template void Hdf5File::create_growing_dataset<double>(const std::string&, const Hdf5Dims&, const Hdf5Dims&);
+template void Hdf5File::create_growing_dataset<std::uint8_t>(const std::string&, const Hdf5Dims&, const Hdf5Dims&);
+template void Hdf5File::create_growing_dataset<std::int32_t>(const std::string&, const Hdf5Dims&, const Hdf5Dims&);
+template void Hdf5File::create_growing_dataset<std::int64_t>(const std::string&, const Hdf5Dims&, const Hdf5Dims&);
+template void Hdf5File::append_row<float>(const std::string&, std::span<const float>);
+template void Hdf5File::append_row<double>(const std::string&, std::span<const double>);
+template void Hdf5File::append_row<std::uint8_t>(const std::string&, std::span<const std::uint8_t>);
+template void Hdf5File::append_row<std::int32_t>(const std::string&, std::span<const std::int32_t>);
+template void Hdf5File::append_row<std::int64_t>(const std::string&, std::span<const std::int64_t>);
 template void Hdf5File::create_chunked_dataset<float>(const std::string&, const Hdf5Dims&, const Hdf5Dims&, float);
 template void Hdf5File::create_chunked_dataset<std::uint32_t>(const std::string&, const Hdf5Dims&, const Hdf5Dims&,
                                                               std::uint32_t);
@@ -263,6 +317,7 @@ template void Hdf5File::attribute<std::int32_t>(const std::string&, const std::s
 template void Hdf5File::attribute<std::int64_t>(const std::string&, const std::string&, std::span<const std::int64_t>);
 template void Hdf5File::attribute<std::uint32_t>(const std::string&, const std::string&,
                                                  std::span<const std::uint32_t>);
+template void Hdf5File::attribute<std::uint8_t>(const std::string&, const std::string&, std::span<const std::uint8_t>);
 template void Hdf5File::attribute<float>(const std::string&, const std::string&, float);
 template void Hdf5File::attribute<std::int64_t>(const std::string&, const std::string&, std::int64_t);
 

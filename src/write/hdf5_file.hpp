@@ -34,7 +34,8 @@ class Hdf5Handle {
 
 using Hdf5Dims = std::vector<hsize_t>;
 
-/// Objects are named by their absolute path. T is float, double, std::int32_t, std::int64_t or std::uint32_t.
+/// Objects are named by their absolute path. T is float, double, std::uint8_t, std::int32_t, std::int64_t or
+/// std::uint32_t.
 /// The same calls give the same bytes: objects carry no time stamps.
 class Hdf5File {
  public:
@@ -45,6 +46,8 @@ class Hdf5File {
   Hdf5File& operator=(const Hdf5File&) = delete;
 
   void create_group(const std::string& path);
+  /// Another name for an object that exists: a hard link.
+  void link(const std::string& path, const std::string& existing);
 
   template <class T>
   void create_dataset(const std::string& path, const Hdf5Dims& dims);
@@ -57,6 +60,12 @@ class Hdf5File {
   /// element.
   template <class T>
   void write_chunk(const std::string& path, const Hdf5Dims& start, std::span<const T> values);
+  /// No rows yet; chunk.size() is row.size() + 1, its first entry the rows per chunk.
+  template <class T>
+  void create_growing_dataset(const std::string& path, const Hdf5Dims& row, const Hdf5Dims& chunk);
+  /// Adds one row to a growing dataset. Rows reach the file when their chunks are full, or when the file is closed.
+  template <class T>
+  void append_row(const std::string& path, std::span<const T> values);
   /// A scalar dataset with one UTF-8 text.
   void create_text(const std::string& path, const std::string& text);
 
@@ -81,7 +90,7 @@ class Hdf5File {
   template <class Result>
   Result check(Result result, const char* action, const std::string& object) const;
   Hdf5Handle checked(hid_t id, Hdf5Handle::Closer closer, const char* action, const std::string& object) const;
-  void add_dataset(const std::string& path, hid_t type, const Hdf5Dims& dims, const Hdf5Handle& properties);
+  void add_dataset(const std::string& path, hid_t type, hid_t space, const Hdf5Handle& properties);
   void write_attribute(const std::string& object, const std::string& name, hid_t type,
                        const std::optional<Hdf5Dims>& dims, const void* values);
   Hdf5Handle dataset_properties() const;

@@ -125,6 +125,7 @@ class Hdf5Reader {
  private:
   static hid_t native(float) { return H5T_NATIVE_FLOAT; }
   static hid_t native(double) { return H5T_NATIVE_DOUBLE; }
+  static hid_t native(std::uint8_t) { return H5T_NATIVE_UINT8; }
   static hid_t native(std::int32_t) { return H5T_NATIVE_INT32; }
   static hid_t native(std::int64_t) { return H5T_NATIVE_INT64; }
   static hid_t native(std::uint32_t) { return H5T_NATIVE_UINT32; }

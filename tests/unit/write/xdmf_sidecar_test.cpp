@@ -90,6 +90,19 @@ TEST(XdmfSidecar, SelectsNothingWithoutATimeAxis) {
                               "fields.hdf:/VTKHDF/PointData/mask</DataItem>\n</Attribute>"));
 }
 
+TEST(XdmfSidecar, ShowsSixComponentsAsTwoVectors) {
+  OutputLayout layout(Lattice(1, {0, 0, 0}));
+  layout.fields = {testing::meta_of("slip_lines", 6, 0)};
+  EXPECT_THAT(xdmf_sidecar(layout, std::vector<OutputTime>(1), "fields.hdf"),
+              HasSubstr(R"(<Attribute Name="slip_lines_2" AttributeType="Vector" Center="Node">
+<DataItem ItemType="HyperSlab" Dimensions="1 1 1 3" NumberType="Float" Precision="4">
+<DataItem Dimensions="3 4" NumberType="Int" Format="XML">0 0 0 3 1 1 1 1 1 1 1 3</DataItem>
+<DataItem Dimensions="1 1 1 6" NumberType="Float" Precision="4" Format="HDF">fields.hdf:/VTKHDF/PointData/slip_lines</DataItem>
+</DataItem>
+</Attribute>
+)"));
+}
+
 TEST(XdmfSidecar, EscapesWhatXmlReserves) {
   OutputLayout layout(Lattice(1, {0, 0, 0}));
   layout.fields = {testing::meta_of("a<b&\"c\">", 1, 0)};
