@@ -20,9 +20,11 @@ struct FixedSteps {
   double longest = 0;
 };
 
-/// The embedded Runge-Kutta pair 5(4) of Dormand and Prince, one step length per tracer. The estimated error of a step
-/// is at most `tolerance` > 0 along each axis [length], and at most tolerance/h in the strain [1]; where rounding of
-/// the position is coarser than that, it is the bound. Errors of steps add up along the way.
+/// The embedded Runge-Kutta pair 3(2) of Bogacki and Shampine, one step length per tracer. The estimated error of a
+/// step is at most `tolerance` > 0 along each axis [length], and at most tolerance/h in the strain [1]; where rounding
+/// of the position is coarser than that, it is the bound. Between voxels a trilinear velocity bends, and there the
+/// error may be up to 3.2 times its estimate (pairs of higher order are out by 20 to 80). Errors of steps add up along
+/// the way.
 struct AdaptiveSteps {
   double tolerance = 0;
   double longest = std::numeric_limits<double>::infinity();  ///< of a step, > 0 [time]

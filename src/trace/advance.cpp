@@ -46,17 +46,29 @@ class Gate {
     return HWY_LIKELY(good) || (!needs_strain_ && why_not(y) == TracerStop::masked);
   }
 
+  /// Why the rates at a place do not carry a tracer on; moving where they do.
+  TracerStop obstacle(const Four& rates) const {
+    double value[flow_lanes];
+    store(rates, value);
+    if (is_nowhere(value)) return TracerStop::left_material;
+    return needs_strain_ && std::isnan(value[3]) ? TracerStop::masked : TracerStop::moving;
+  }
+
   /// Of a state that does not pass.
   TracerStop why_not(const Four& y) const {
     double value[flow_lanes];
     store(y, value);
-    if (std::isnan(value[0]) || std::isnan(value[1]) || std::isnan(value[2])) return TracerStop::left_material;
+    if (is_nowhere(value)) return TracerStop::left_material;
     for (std::size_t a = 0; a < 3; ++a)
       if (!(value[a] >= lo_[a] && value[a] <= hi_[a])) return TracerStop::left_domain;
     return TracerStop::masked;
   }
 
  private:
+  static bool is_nowhere(const double* value) {
+    return std::isnan(value[0]) || std::isnan(value[1]) || std::isnan(value[2]);
+  }
+
   HWY_ALIGN double lo_[flow_lanes];
   HWY_ALIGN double hi_[flow_lanes];
   bool needs_strain_;
@@ -203,21 +215,22 @@ class Adaptive {
     double longest = 0;
     while (t < leg_.until) {
       const double rest = leg_.until - t;
-      const double now = std::min({std::max(step, shortest_), steps_.longest, rest});
-      const EmbeddedStep<Group<1>> next = dormand_prince_step(u, t, y, k, now);
-      const Four& last = next.last.tracer[0];
-      if (!gate_.passes(next.y.tracer[0]) || any_nan_of(last)) {
+      const double now =
+          std::min({std::max(std::min(step, voxel_ / speed_of(k.tracer[0])), shortest_), steps_.longest, rest});
+      const EmbeddedStep<Group<1>> next = bogacki_shampine_step(u, t, y, k, now);
+      const TracerStop obstacle =
+          gate_.passes(next.y.tracer[0]) ? gate_.obstacle(next.last.tracer[0]) : gate_.why_not(next.y.tracer[0]);
+      if (obstacle != TracerStop::moving) {
         ++counts.rejected;
         if (is_fine(now, k.tracer[0])) {
-          stop_tracer(gate_.passes(next.y.tracer[0]) ? gate_.why_not(last) : gate_.why_not(next.y.tracer[0]), t,
-                      tracers_, tracer);
+          stop_tracer(obstacle, t, tracers_, tracer);
           break;
         }
         step = now / 2;
         continue;
       }
       const double error = error_of(next);
-      const double factor = std::clamp(0.9 * std::pow(error, -0.2), 0.2, 5.0);
+      const double factor = std::clamp(0.9 * std::cbrt(1 / error), 0.2, 5.0);
       if (error > 1 && now > shortest_) {
         ++counts.rejected;
         step = now * factor;
@@ -237,12 +250,6 @@ class Adaptive {
   }
 
  private:
-  static bool any_nan_of(const Four& v) {
-    double value[flow_lanes];
-    store(v, value);
-    return std::isnan(value[0]) || std::isnan(value[1]) || std::isnan(value[2]);
-  }
-
   static double speed_of(const Four& k) {
     double value[flow_lanes];
     store(k, value);

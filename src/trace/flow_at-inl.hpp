@@ -7,6 +7,7 @@
 #define GRAINVDB_TRACE_FLOW_AT_INL_HPP
 #endif
 
+#include <algorithm>
 #include <cstddef>
 
 #include <hwy/highway.h>
@@ -47,7 +48,7 @@ class MeanFlow {
   template <std::size_t n>
   class At {
    public:
-    explicit At(const MeanFlow& flow) : flow_(flow) {}
+    explicit At(const MeanFlow& flow) : flow_(flow) { std::fill_n(last_, n, flow.sampler_.nowhere()); }
     HWY_INLINE Group<n> operator()(double, const Group<n>& y) {
       return make_group<n>([&](std::size_t i) HWY_ATTR { return flow_.sampler_(y.tracer[i], last_[i]); });
     }
@@ -71,7 +72,10 @@ class FrameFlow {
   template <std::size_t n>
   class At {
    public:
-    explicit At(const FrameFlow& flow) : flow_(flow) {}
+    explicit At(const FrameFlow& flow) : flow_(flow) {
+      std::fill_n(last_[0], n, flow.first_.nowhere());
+      std::fill_n(last_[1], n, flow.second_.nowhere());
+    }
     HWY_INLINE Group<n> operator()(double t, const Group<n>& y) {
       const double s = (t - flow_.t0_) / flow_.span_;
       return make_group<n>([&](std::size_t i) HWY_ATTR {

@@ -66,8 +66,8 @@ HWY_INLINE bool any_nan(const Four& v) {
 
 /// The block that a tracer was in last.
 struct LastBlock {
-  std::int32_t origin[3] = {1, 1, 1};  ///< of its leaf; no leaf begins at 1
-  const float* block = nullptr;
+  std::int32_t origin[3];  ///< of its leaf
+  const float* block;
 };
 
 /// Samples one grid. A value is NaN where one of the voxels around is undefined.
@@ -87,6 +87,12 @@ class GridSampler {
         last_[a] = period->first + period->count - 1;
       }
     }
+  }
+
+  /// Where no leaf is: voxels have 31-bit indices.
+  LastBlock nowhere() const {
+    constexpr std::int32_t far = std::numeric_limits<std::int32_t>::max() & ~(leaf_edge - 1);
+    return {{far, far, far}, blocks_.block(blocks_.index.leaf_count())};
   }
 
   HWY_INLINE Four operator()(const Four& x, LastBlock& last) const {
