@@ -71,6 +71,8 @@ class FrameSource {
   /// Every file of the input with its size in bytes, for the provenance.
   virtual std::vector<std::pair<std::string, std::uintmax_t>> files() const = 0;
 
+  /// Throws InputError when frame k lacks a wanted column or its contacts, by the index alone.
+  virtual void require(std::size_t k, ColumnSet wanted) = 0;
   /// Reads frame k of the index: id, position and the wanted columns. Throws InputError or IoError.
   virtual Frame read(std::size_t k, ColumnSet wanted) = 0;
 

@@ -37,6 +37,7 @@ struct Limits {
   std::int64_t extent = 1'000'000;            ///< voxels along any axis
   std::int64_t dense_voxels = 4'000'000'000;  ///< voxels of the written box
   double memory_gb = 0;                       ///< of moment sums; 0: three quarters of the machine's memory
+  std::size_t frames_in_flight = 0;           ///< read but not yet summed; 0: chosen by the number of threads
 };
 
 struct Pipeline {

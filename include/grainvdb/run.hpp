@@ -2,6 +2,7 @@
 /// Runs a pipeline: streams the frames through the plan's sweeps, averages, derives and writes.
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -9,8 +10,10 @@
 
 #include "grainvdb/field_sink.hpp"
 #include "grainvdb/frame_source.hpp"
+#include "grainvdb/mask.hpp"
 #include "grainvdb/pipeline.hpp"
 #include "grainvdb/plan.hpp"
+#include "grainvdb/sparse_field.hpp"
 
 namespace grainvdb {
 
@@ -21,11 +24,12 @@ struct Progress {
 };
 
 struct RunReport {
-  std::size_t frames = 0;                                   ///< read at least once
-  std::size_t active_voxels = 0;                            ///< of the last output time
-  std::size_t channels = 0;                                 ///< splatted per frame, over all sweeps
-  std::size_t grids = 0;                                    ///< OpenVDB grids allocated over the run, the mask apart
-  std::vector<std::pair<std::string, double>> seconds;      ///< wall time by step of the run: read, bin and splat, …
+  std::size_t frames = 0;         ///< read at least once
+  std::size_t active_voxels = 0;  ///< of the last output time
+  std::size_t channels = 0;       ///< splatted per frame, over all sweeps
+  std::size_t grids = 0;          ///< OpenVDB grids allocated over the run, the mask apart
+  double wall_seconds = 0;
+  std::vector<std::pair<std::string, double>> seconds;      ///< by step of the run: read, splat, …; steps overlap
   std::vector<std::pair<std::string, std::size_t>> masked;  ///< reason → voxels, of the last output time
   std::vector<std::string> files;                           ///< written
   ReadCounters read;
@@ -41,7 +45,25 @@ Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSou
 void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
                  std::size_t k);
 
-/// Runs the whole pipeline into the sinks. `progress` is called from the calling thread, after each frame.
+/// The fields of one output time.
+struct OutputFields {
+  OutputTime time;
+  std::map<std::string, SparseField> fields;  ///< those that the pipeline wants, on one topology
+  Mask mask;
+};
+
+/// Reads, splats, averages and derives, and hands over one output time after another. Frames are read ahead and
+/// prepared while those before them are splatted; no more than limits.frames_in_flight are in memory. The fields have
+/// the same bytes for any number of threads and of frames in flight. Where something fails, what belongs to the
+/// earliest frame is thrown.
+///
+/// `take` and `progress` are called by one thread at a time, `progress` after each frame of each sweep; what they throw
+/// ends the run.
+RunReport compute_fields(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
+                         const std::function<void(OutputFields)>& take,
+                         const std::function<void(const Progress&)>& progress = {});
+
+/// Runs the whole pipeline into the sinks. One output time is written while the next is computed.
 RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                        const std::vector<std::unique_ptr<FieldSink>>& sinks,
                        const std::function<void(const Progress&)>& progress = {});

@@ -44,13 +44,13 @@ std::string describe(const RunReport& report) {
   text << std::fixed << std::setprecision(2);
   text << counted(report.frames, "frame") << ", " << counted(report.active_voxels, "active voxel") << ", "
        << counted(report.channels, "channel") << " splatted per frame\n";
-  double total = 0;
-  text << "time:";
+  text << "time: " << report.wall_seconds << " s; by step, which overlap:";
+  const char* between = " ";
   for (const auto& [step, seconds] : report.seconds) {
-    text << ' ' << step << ' ' << seconds << " s,";
-    total += seconds;
+    text << between << step << ' ' << seconds << " s";
+    between = ", ";
   }
-  text << " in all " << total << " s\n";
+  text << '\n';
   text << "read: " << counted(report.read.files_opened.size(), "file") << ", " << counted(report.read.rows_read, "row")
        << ", " << static_cast<double>(report.read.bytes_read) / 1e6 << " MB\n";
   for (const auto& [reason, count] : report.masked)

@@ -4,7 +4,8 @@
 #include <stdexcept>
 
 #include "grainvdb/run.hpp"
-#include "pipeline/frame_context.hpp"
+#include "pipeline/frame_checks.hpp"
+#include "pipeline/material.hpp"
 
 namespace grainvdb {
 namespace {
@@ -55,15 +56,17 @@ void check_periodic_box(const Pipeline& pipeline, const FrameInfo& first, const 
   }
 }
 
+ColumnSet all_columns(const Plan& plan) {
+  ColumnSet all;
+  for (const Sweep& s : plan.sweeps) all |= s.columns;
+  return all;
+}
+
 }  // namespace
 
 void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
                  std::size_t k) {
-  ColumnSet all;
-  for (const Sweep& s : plan.sweeps) all |= s.columns;
-  const std::set<std::string> nothing_kept;
-  const FrameContext checked(source.read(k, all), pipeline, lattice, LucyKernel(pipeline.cutoff), nothing_kept,
-                             nullptr);
+  check_places(make_material(source.read(k, all_columns(plan)), pipeline.select), lattice, pipeline);
 }
 
 Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source) {
@@ -86,8 +89,8 @@ Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSou
     throw ConfigError({pipeline.location("lattice.voxel"), e.what(), {}, {}, {}});
   }
 
-  // A column that only the second sweep wants would be missed after the whole of the first.
-  if (plan.sweeps.size() > 1) check_frame(pipeline, plan, lattice, source, wanted.front());
+  // Before the first frame is read: what only the last sweep wants of the last frame would else be missed after hours.
+  for (std::size_t k : wanted) source.require(k, all_columns(plan));
   return lattice;
 }
 

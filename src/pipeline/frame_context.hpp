@@ -1,11 +1,11 @@
 #pragma once
-/// One frame on its way through the passes of a sweep: bucketed once, splatted pass by pass, sampled in between.
+/// One frame on one lattice, on its way through the passes of a sweep: bucketed once, splatted pass by pass, sampled in
+/// between.
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "average/moment_sums.hpp"
@@ -15,25 +15,37 @@
 #include "grainvdb/leaf_buffers.hpp"
 #include "grainvdb/moment.hpp"
 #include "grainvdb/pipeline.hpp"
+#include "pipeline/frame_checks.hpp"
+#include "pipeline/material.hpp"
+#include "pipeline/splat_groups.hpp"
 #include "splat/leaf_consumer.hpp"
+#include "splat/splat.hpp"
 
 namespace grainvdb {
 
-/// Keeps the particles that the selection counts as material.
-void apply_selection(const Selection& selection, const Box& box, Particles& particles);
+/// What all frames on one lattice share.
+struct SplatSetting {
+  SplatSetting(const Pipeline& p, const Lattice& l) : pipeline(p), lattice(l), kernel(p.cutoff) {}
+  const Pipeline& pipeline;
+  Lattice lattice;
+  LucyKernel kernel;
+};
 
 class FrameContext : public FrameView {
  public:
-  /// Takes the frame. `kept` names the moments whose values other moments of the frame ask for; `means` are those of
-  /// the sweep before, or nullptr.
-  FrameContext(Frame frame, const Pipeline& pipeline, const Lattice& lattice, const LucyKernel& kernel,
-               const std::set<std::string>& kept, const MomentMeans* means);
+  /// Makes the checks of a frame (LimitError). Setting and groups must outlive the context.
+  FrameContext(std::shared_ptr<const Material> material, const SplatSetting& setting, const SweepGroups& groups);
 
-  /// Splats the moments of one pass, in one splat per kind, and adds those that `sums` wants.
-  void run_pass(const std::vector<MomentPtr>& pass, MomentSums& sums);
+  /// Computes ahead what depends on nothing but this frame: buckets, topologies and values of the first pass. Sums take
+  /// so many bytes per leaf. Throws LimitError before it allocates what would exceed limits.memory_gb.
+  void prepare(std::size_t bytes_per_leaf);
 
-  const Particles& particles() const override { return frame_.particles; }
-  const HalfBranches& branches() const override { return branches_; }
+  /// Splats all passes, each group of moments in one splat, and adds what `sums` wants. `means` are those of the sweep
+  /// before, or nullptr. Throws LimitError as prepare does.
+  void run(MomentSums& sums, const MomentMeans* means);
+
+  const Particles& particles() const override { return material_->particles; }
+  const HalfBranches& branches() const override { return material_->branches; }
   std::vector<Vec3> interpolate_frame(const Moment& numerator, const Moment& denominator) const override;
   std::vector<Vec3> interpolate_mean(const Moment& numerator, const Moment& denominator) const override;
   std::vector<Vec3> interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
@@ -45,38 +57,30 @@ class FrameContext : public FrameView {
     const LeafBuffers* buffers = nullptr;
     int channel = 0;
   };
-  using Group = std::vector<MomentPtr>;
-
-  /// The values of all moments of a group, [entry][value], with the channel that weighs each value or -1.
-  struct Values {
-    std::vector<double> q;
-    std::vector<int> weight_of;
+  /// A group before its splat: its values, [entry][value], and what must outlive them.
+  struct Started {
+    std::vector<double> values;
+    std::unique_ptr<ContactSplat> contacts;
   };
-  void splat_group(const Group& group, MomentSums& sums);
-  void combine_voxels(const Moment& moment, MomentSums& sums);
-  /// Splats into the sums, with no buffer but for the moments that are kept.
-  void splat_leaves(const Group& group, const Values& values, MomentSums& sums);
-  LeafConsumer consumer(const Group& group, const std::shared_ptr<const Topology>& topology, MomentSums& sums);
-  void keep(LeafBuffers buffers, const Group& group, MomentSums& sums);
-  /// Appends to the group the weights that it lacks.
-  Values values_of(Group& group) const;
-  LeafBuffers splat_in_double(const Group& group, const Values& values) const;
-  void bucket_particles();
-  /// Refuses, before it is allocated, what would exceed limits.memory_gb (LimitError).
-  void check_memory(std::size_t leaves, int values, const MomentSums& sums) const;
-  double memory_needed(double leaves, int values, const MomentSums& sums) const;
-  bool fits(double leaves, int values, const MomentSums& sums) const;
-  std::size_t entries(Moment::Kind kind) const;
 
-  const Pipeline& pipeline_;
-  const Lattice& lattice_;
-  const LucyKernel& kernel_;
-  const std::set<std::string>& kept_;
-  const MomentMeans* means_;
-  Frame frame_;
-  HalfBranches branches_;
+  Started start(const SplatGroup& group, std::size_t bytes_per_leaf);
+  void bucket_particles();
+  std::vector<double> values_of(const SplatGroup& group) const;
+  void splat(const SplatGroup& group, const Started& started, MomentSums& sums);
+  LeafBuffers splat_in_double(const SplatGroup& group, const Started& started) const;
+  /// What takes the sums of a group's leaves: the sums of the window, and a buffer for the moments that are kept.
+  LeafConsumer consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology, MomentSums& sums);
+  void keep(LeafBuffers buffers, const std::vector<MomentPtr>& moments, MomentSums& sums);
+  void combine_voxels(const MomentPtr& moment, MomentSums& sums);
+  void check(std::size_t leaves, const SplatGroup& group, std::size_t bytes_per_leaf, std::size_t summed_leaves) const;
+
+  std::shared_ptr<const Material> material_;
+  const SplatSetting& setting_;
+  const SweepGroups& groups_;
+  const MomentMeans* means_ = nullptr;
   std::optional<Buckets> buckets_;
   std::shared_ptr<const Topology> topology_;
+  std::map<const SplatGroup*, Started> started_;
   std::vector<std::unique_ptr<LeafBuffers>> buffers_;
   std::map<std::string, Place> places_;
 };

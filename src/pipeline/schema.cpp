@@ -281,6 +281,15 @@ void add_limits(Schema& schema) {
   memory.minimum = 0;
   memory.apply = [](Pipeline& p, const ConfigValue& v) { p.limits.memory_gb = std::get<double>(v); };
   schema.keys.push_back(memory);
+  KeyInfo in_flight{"limits", "frames_in_flight", ValueType::integer,
+                    "Frames in memory at the same time; 0 means one more than there are threads, and 8 at most."};
+  in_flight.default_value = std::int64_t{0};
+  in_flight.minimum = 0;
+  in_flight.maximum = 1000;
+  in_flight.apply = [](Pipeline& p, const ConfigValue& v) {
+    p.limits.frames_in_flight = static_cast<std::size_t>(std::get<std::int64_t>(v));
+  };
+  schema.keys.push_back(in_flight);
 }
 
 std::string range_of(const KeyInfo& key) {

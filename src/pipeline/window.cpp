@@ -1,63 +1,35 @@
 #include "pipeline/window.hpp"
 
-#include <optional>
-#include <set>
-#include <string>
-
-#include "pipeline/frame_context.hpp"
+#include <utility>
 
 namespace grainvdb {
-namespace {
 
-OutputTime time_of(const FrameSource& source, std::span<const std::size_t> wanted) {
-  OutputTime t;
-  t.first_step = source.frames()[wanted.front()].step;
-  t.last_step = source.frames()[wanted.back()].step;
-  t.frame_count = wanted.size();
-  for (std::size_t k : wanted) {
-    const FrameInfo& frame = source.frames()[k];
-    t.time += frame.time.value_or(static_cast<double>(frame.step)) / static_cast<double>(wanted.size());
-  }
-  return t;
+WindowAverager::WindowAverager(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice)
+    : plan_(plan), setting_(pipeline, lattice), bytes_per_leaf_(MomentSums(plan.means).bytes(1)) {
+  for (const Sweep& sweep : plan.sweeps) groups_.push_back(group_moments(sweep));
+  begin_window();
 }
 
-/// Names of the moments that others of the same frame are made of.
-std::set<std::string> needed_in_frame(const Sweep& sweep) {
-  std::set<std::string> names;
-  for (const auto& pass : sweep.passes)
-    for (const MomentPtr& m : pass)
-      for (const MomentPtr& need : m->frame_needs) names.insert(need->name);
-  return names;
+void WindowAverager::begin_window() {
+  means_.reset();
+  sums_.emplace(plan_.means);
 }
 
-}  // namespace
+std::unique_ptr<FrameContext> WindowAverager::prepare(std::shared_ptr<const Material> material,
+                                                      std::size_t sweep) const {
+  auto context = std::make_unique<FrameContext>(std::move(material), setting_, groups_[sweep]);
+  context->prepare(bytes_per_leaf_);
+  return context;
+}
 
-WindowMoments average_window(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
-                             std::span<const std::size_t> wanted, Stopwatch& clock,
-                             const std::function<void(std::size_t)>& frame_done) {
-  const LucyKernel kernel(pipeline.cutoff);
-  MomentSums sums(plan.means);
-  std::optional<MomentMeans> means;
-  std::size_t material = 0;
-  for (std::size_t s = 0; s < plan.sweeps.size(); ++s) {
-    const Sweep& sweep = plan.sweeps[s];
-    const std::set<std::string> kept = needed_in_frame(sweep);
-    for (std::size_t k : wanted) {
-      Frame frame = clock.time("read", [&] { return source.read(k, sweep.columns); });
-      clock.time("splat", [&] {
-        FrameContext context(std::move(frame), pipeline, lattice, kernel, kept, means ? &*means : nullptr);
-        material += context.particles().size();
-        for (const auto& pass : sweep.passes) context.run_pass(pass, sums);
-        sums.end_frame();
-      });
-      frame_done(s);
-    }
-    clock.time("average", [&] {
-      sums.end_sweep(wanted.size());
-      means.emplace(sums.means());
-    });
-  }
-  return {std::move(sums), std::move(*means), time_of(source, wanted), material};
+void WindowAverager::add(FrameContext& frame) {
+  frame.run(*sums_, means_ ? &*means_ : nullptr);
+  sums_->end_frame();
+}
+
+void WindowAverager::end_sweep(std::size_t frames) {
+  sums_->end_sweep(frames);
+  means_.emplace(sums_->means());
 }
 
 }  // namespace grainvdb

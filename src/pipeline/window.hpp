@@ -1,31 +1,48 @@
 #pragma once
-/// The moments of one output time: the frames of a window, swept as often as the plan asks.
-#include <functional>
-#include <span>
-#include <string>
+/// The moments of one output time after another, on one lattice: the frames of a window, swept as often as the plan
+/// asks.
+#include <cstddef>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "average/moment_sums.hpp"
-#include "grainvdb/field_sink.hpp"
-#include "grainvdb/frame_source.hpp"
 #include "grainvdb/lattice.hpp"
 #include "grainvdb/pipeline.hpp"
 #include "grainvdb/plan.hpp"
-#include "pipeline/stopwatch.hpp"
+#include "pipeline/frame_context.hpp"
+#include "pipeline/material.hpp"
+#include "pipeline/splat_groups.hpp"
 
 namespace grainvdb {
 
-struct WindowMoments {
-  MomentSums sums;
-  MomentMeans means;  ///< a view of the sums
-  OutputTime time;
-  std::size_t material = 0;  ///< particles that select kept, summed over frames and sweeps
-};
+class WindowAverager {
+ public:
+  /// Pipeline and plan must outlive the averager.
+  WindowAverager(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice);
+  WindowAverager(const WindowAverager&) = delete;
+  WindowAverager& operator=(const WindowAverager&) = delete;
 
-/// Reads and splats the frames `wanted` (indices into the source). `frame_done(sweep)` is called after each frame of
-/// each sweep. Throws LimitError when the sums would outgrow limits.memory_gb.
-WindowMoments average_window(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
-                             std::span<const std::size_t> wanted, Stopwatch& clock,
-                             const std::function<void(std::size_t sweep)>& frame_done);
+  const Lattice& lattice() const { return setting_.lattice; }
+
+  /// What can be computed of a frame before its turn comes. Concurrent calls are safe. Throws LimitError.
+  std::unique_ptr<FrameContext> prepare(std::shared_ptr<const Material> material, std::size_t sweep) const;
+
+  /// Adds the next frame of the current sweep. Throws LimitError when the sums would outgrow limits.memory_gb.
+  void add(FrameContext& frame);
+  /// Ends a sweep over `frames` frames.
+  void end_sweep(std::size_t frames);
+  /// Of the sweeps that have ended: a view of the sums, which begin_window takes away.
+  const MomentMeans& means() const { return *means_; }
+  void begin_window();
+
+ private:
+  const Plan& plan_;
+  SplatSetting setting_;
+  std::vector<SweepGroups> groups_;  // of each sweep
+  std::size_t bytes_per_leaf_;       // of the sums
+  std::optional<MomentSums> sums_;
+  std::optional<MomentMeans> means_;
+};
 
 }  // namespace grainvdb

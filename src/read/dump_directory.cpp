@@ -104,10 +104,12 @@ class DumpDirectory final : public FrameSource {
   }
   std::vector<std::string> contact_columns() override { return contacts_->first_columns(); }
   std::vector<std::pair<std::string, std::uintmax_t>> files() const override;
+  void require(std::size_t k, ColumnSet wanted) override;
   Frame read(std::size_t k, ColumnSet wanted) override;
   const ReadCounters& counters() const override { return counters_; }
 
  private:
+  std::size_t find_contacts(std::int64_t step);
   Contacts read_contacts(std::int64_t step);
 
   InputSpec spec_;
@@ -153,6 +155,13 @@ std::vector<std::pair<std::string, std::uintmax_t>> DumpDirectory::files() const
   return all;
 }
 
+void DumpDirectory::require(std::size_t k, ColumnSet wanted) {
+  particle_layout(particles_.header(particles_.frames().at(k)), frames_[k].file, spec_, wanted);
+  if (!wanted.has(Column::contacts)) return;
+  const FrameRecord& contacts = contacts_->frames()[find_contacts(frames_[k].step)];
+  contact_layout(contacts_->header(contacts), contacts_->files()[contacts.file].path, spec_);
+}
+
 Frame DumpDirectory::read(std::size_t k, ColumnSet wanted) {
   const FrameInfo& info = frames_.at(k);
   const FrameHeader& header = particles_.go_to(k);
@@ -168,7 +177,8 @@ Frame DumpDirectory::read(std::size_t k, ColumnSet wanted) {
   return frame;
 }
 
-Contacts DumpDirectory::read_contacts(std::int64_t step) {
+/// The frame of contacts of a step. The first call indexes the contact dumps.
+std::size_t DumpDirectory::find_contacts(std::int64_t step) {
   const Location where = stated_at(spec_, "input.contacts.files");
   if (spec_.contacts.files.empty())
     throw InputError({where,
@@ -191,8 +201,13 @@ Contacts DumpDirectory::read_contacts(std::int64_t step) {
                           listed(spec_.contacts.files),
                       "one contact frame for every particle frame that is used",
                       "Choose the frames that have contacts, or fields that need none"});
-  const FrameHeader& header = contacts_->go_to(*k);
-  const std::string& file = contacts_->files()[contacts_->frames()[*k].file].path;
+  return *k;
+}
+
+Contacts DumpDirectory::read_contacts(std::int64_t step) {
+  const std::size_t k = find_contacts(step);
+  const FrameHeader& header = contacts_->go_to(k);
+  const std::string& file = contacts_->files()[contacts_->frames()[k].file].path;
   const ContactLayout layout = contact_layout(header, file, spec_);
   return make_contacts(layout, contacts_->read_rows(layout.request), header, file);
 }

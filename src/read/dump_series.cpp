@@ -72,8 +72,8 @@ void DumpSeries::index_file(std::size_t file, std::map<FileClass, double>& bytes
     }
     note_units(*header, input.path);
     const std::size_t columns = column_set(header->columns);
-    frames_.push_back(
-        {file, count++, false, header->start, header->step, header->time, header->rows, header->box, columns});
+    frames_.push_back({file, count++, false, header->start, header->step, header->time, header->rows, header->box,
+                       columns, header->columns_line});
     if (count == 1) {
       file_class = FileClass{columns, dump_.compression};
       const auto known = bytes_per_row.find(*file_class);
@@ -133,6 +133,19 @@ void DumpSeries::sort_frames() {
   const Location second{files_[(twice + 1)->file].path, (twice + 1)->start.line};
   throw InputError({second, "timestep " + std::to_string(twice->step) + " comes twice",
                     "it also in " + to_string(first), "each timestep once", "Correct the paths or globs of the input"});
+}
+
+FrameHeader DumpSeries::header(const FrameRecord& frame) const {
+  FrameHeader header;
+  header.start = frame.start;
+  header.step = frame.step;
+  header.time = frame.time;
+  header.box = frame.box;
+  header.kind = kind_;
+  header.rows = frame.rows;
+  header.columns = columns(frame);
+  header.columns_line = frame.columns_line;
+  return header;
 }
 
 std::optional<std::size_t> DumpSeries::find(std::int64_t step) const {

@@ -26,6 +26,7 @@ struct FrameRecord {
   std::size_t rows = 0;
   Box box;
   std::size_t columns = 0;  ///< in column_sets()
+  std::size_t columns_line = 0;
 };
 
 /// A text and where it stands.
@@ -49,6 +50,8 @@ class DumpSeries {
   const std::vector<InputFile>& files() const { return files_; }
   const std::vector<FrameRecord>& frames() const { return frames_; }
   const std::vector<std::string>& columns(const FrameRecord& frame) const { return column_sets_[frame.columns]; }
+  /// What the index knows of a frame's header.
+  FrameHeader header(const FrameRecord& frame) const;
   /// Unit system named in the dumps, if any.
   const std::optional<Stated>& units() const { return units_; }
   /// The frame of a step, if there is one.

@@ -70,6 +70,20 @@ TEST(Determinism, AnyNumberOfThreads) {
   }
 }
 
+/// The kinetic stress about the time mean takes a second sweep, whose frames are read while the first is at work.
+TEST(Determinism, AnyNumberOfFramesInFlight) {
+  for (std::size_t threads : {1U, 3U})
+    for (std::size_t frames : {1U, 2U, 5U, 30U}) {
+      const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+      SCOPED_TRACE(std::to_string(threads) + " threads, " + std::to_string(frames) + " frames");
+      Pipeline p = shear_cell_pipeline(all_fields());
+      p.select.types = {1};
+      p.limits.frames_in_flight = frames;
+      const auto source = open_dumps(p.input);
+      expect_same_bytes(plain(), run(p, *source));
+    }
+}
+
 /// The five snapshots written anew by `write(path, text)` with this ending, one file each.
 InputSpec rewritten(const TemporaryFolder& folder, const std::string& ending,
                     const std::function<void(const std::string&, const std::string&)>& write) {

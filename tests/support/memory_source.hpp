@@ -20,6 +20,7 @@ class MemorySource : public FrameSource {
   const std::vector<std::string>& particle_columns() const override { return columns_; }
   std::vector<std::string> contact_columns() override { return {"id1", "id2", "force", "point"}; }
   std::vector<std::pair<std::string, std::uintmax_t>> files() const override { return {{"memory", 0}}; }
+  void require(std::size_t, ColumnSet) override {}
   Frame read(std::size_t k, ColumnSet wanted) override;
   const ReadCounters& counters() const override { return counters_; }
 

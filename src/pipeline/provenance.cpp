@@ -1,0 +1,42 @@
+#include "pipeline/provenance.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "grainvdb/version.hpp"
+
+namespace grainvdb {
+namespace {
+
+template <class Range, class F>
+std::string lines(const Range& range, F&& line) {
+  std::string text;
+  for (const auto& item : range) text += line(item) + "\n";
+  return text;
+}
+
+}  // namespace
+
+Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const FrameSource& source,
+                         std::span<const std::size_t> wanted) {
+  const auto plain = [](const auto& s) { return s; };
+  std::vector<std::size_t> skipped;
+  for (std::size_t k = 0; k < source.frames().size(); ++k)
+    if (!std::binary_search(wanted.begin(), wanted.end(), k)) skipped.push_back(k);
+  const auto step = [&](std::size_t k) { return std::to_string(source.frames()[k].step); };
+  std::set<std::string> columns;
+  for (const Sweep& sweep : plan.sweeps)
+    for (const std::string& name : column_names(sweep.columns)) columns.insert(name);
+  return {{"version", GRAINVDB_VERSION},
+          {"pipeline", pipeline.resolved},
+          {"inputs", lines(source.files(), [](const auto& f) { return f.first + " " + std::to_string(f.second); })},
+          {"units", source.units().name},
+          {"steps", lines(wanted, step)},
+          {"skipped_frames", lines(skipped, step)},
+          {"columns_read", lines(columns, plain)},
+          {"computed", lines(plan.stages, [](const Stage* s) { return s->name + ": " + s->equation; })},
+          {"not_needed", lines(plan.not_needed, plain)}};
+}
+
+}  // namespace grainvdb
