@@ -1,43 +1,17 @@
 #include "grainvdb/flow.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "trace/cell.hpp"
 #include "trace/flow_blocks.hpp"
 #include "trace/spline.hpp"
 
 namespace grainvdb {
 namespace {
-
-/// The cell of eight voxels around a place.
-struct Cell {
-  Coord voxel;  ///< the lower one, of the stored period
-  Vec3 within;  ///< from its centre, in voxels
-};
-
-Cell cell_at(const Lattice& lattice, const Vec3& x) {
-  std::array<double, 3> whole{};
-  Cell cell;
-  for (int a = 0; a < 3; ++a) {
-    const auto i = static_cast<std::size_t>(a);
-    double u = lattice.to_index(a, x[i]);
-    double last = std::numeric_limits<double>::max();
-    if (const auto& period = lattice.period(a)) {
-      u -= period->length * std::floor((u - period->first) / period->length);
-      last = period->first + period->count - 1;
-    }
-    whole[i] = std::min(std::floor(u), last);
-    cell.within[i] = u - whole[i];
-  }
-  cell.voxel = {static_cast<std::int32_t>(whole[0]), static_cast<std::int32_t>(whole[1]),
-                static_cast<std::int32_t>(whole[2])};
-  return cell;
-}
 
 /// The product of weights along the axes over the n³ voxels from `block` on.
 template <std::size_t n>
