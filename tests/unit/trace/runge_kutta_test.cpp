@@ -10,24 +10,14 @@
 #include "trace/runge_kutta-inl.hpp"
 //
 #include "unit/trace/orifice.hpp"
+#include "unit/trace/state.hpp"
 
 namespace grainvdb {
 namespace {
 
 using namespace HWY_NAMESPACE;  // NOLINT: the steps, for the instruction set of this build
 using testing::OrificeFlow;
-
-/// A position as the steps see it.
-struct State {
-  std::array<double, 3> x{};
-};
-State moved(State y, double a, const State& k) {
-  for (std::size_t i = 0; i < 3; ++i) y.x[i] += a * k.x[i];
-  return y;
-}
-State scaled(double a, const State& k) {
-  return moved({}, a, k);
-}
+using testing::State;
 
 constexpr double x0 = 6, z0 = 40, z1 = 10;
 constexpr State start{{x0, 0, z0}};
