@@ -3,12 +3,12 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "base/parallel.hpp"
+#include "splat/leaf_finder.hpp"
 
 namespace grainvdb {
 namespace {
@@ -17,28 +17,6 @@ namespace {
 struct Terms {
   Vec3 numerator{};
   double denominator = 0;
-};
-
-// Finds leaves, remembering the last one.
-class Finder {
- public:
-  explicit Finder(const Topology& topology) : topology_(topology) {}
-
-  /// The leaf of a voxel; nothing outside the topology, where nothing was added.
-  std::optional<std::size_t> leaf(const Coord& origin) {
-    if (!known_ || origin != origin_) {
-      leaf_ = topology_.find(origin);
-      origin_ = origin;
-      known_ = true;
-    }
-    return leaf_;
-  }
-
- private:
-  const Topology& topology_;
-  bool known_ = false;
-  Coord origin_;
-  std::optional<std::size_t> leaf_;
 };
 
 class VoxelRatio {
@@ -63,8 +41,8 @@ class VoxelRatio {
  private:
   const RatioView& ratio_;
   bool shared_;
-  Finder numerator_;
-  Finder denominator_;
+  LeafFinder numerator_;
+  LeafFinder denominator_;
 };
 
 // Sums over the homogeneous axes, dense over the bounds of the denominator along the others.
@@ -134,30 +112,46 @@ Place place(const Lattice& lattice, int axis, double x) {
   return {static_cast<std::int32_t>(below), u - below};
 }
 
-// Σ over the surrounding voxels of their weight times their ratio. Voxels of no weight are not asked for.
-template <class Ratio>
-Vec3 interpolate(const Lattice& lattice, const std::array<Place, 3>& places, Ratio& ratio) {
-  Vec3 result{};
+// The voxels around a position with their trilinear weights, in lexicographic order.
+Surroundings around(const std::array<Place, 3>& places) {
+  Surroundings result;
   for (int corner = 0; corner < 8; ++corner) {
     const std::array<int, 3> step{corner >> 2, (corner >> 1) & 1, corner & 1};
     double weight = 1;
     for (int a = 0; a < 3; ++a) weight *= step[a] == 1 ? places[a].fraction : 1 - places[a].fraction;
-    if (weight == 0) continue;
-    const Coord voxel =
-        lattice.wrap(Coord{places[0].below + step[0], places[1].below + step[1], places[2].below + step[2]});
+    result[static_cast<std::size_t>(corner)] = {
+        {places[0].below + step[0], places[1].below + step[1], places[2].below + step[2]}, weight};
+  }
+  return result;
+}
+
+// Σ over the surrounding voxels of their weight times their ratio. Voxels of no weight are not asked for.
+template <class Ratio>
+Vec3 interpolate(const Lattice& lattice, const std::array<Place, 3>& places, Ratio& ratio) {
+  Vec3 result{};
+  for (const Surrounding& s : around(places)) {
+    if (s.weight == 0) continue;
+    const Coord voxel = lattice.wrap(s.voxel);
     const Terms terms = ratio(voxel);
-    if (!(terms.denominator > 0)) {
-      std::ostringstream text;
-      text << "a field is sampled beside voxel (" << voxel.x << ", " << voxel.y << ", " << voxel.z
-           << "), which no kernel reaches";
-      throw std::logic_error(text.str());
-    }
-    for (int a = 0; a < 3; ++a) result[a] += weight * (terms.numerator[a] / terms.denominator);
+    require_reached(voxel, terms.denominator);
+    for (int a = 0; a < 3; ++a) result[a] += s.weight * (terms.numerator[a] / terms.denominator);
   }
   return result;
 }
 
 }  // namespace
+
+void require_reached(const Coord& voxel, double total) {
+  if (total > 0) return;
+  std::ostringstream text;
+  text << "a field is sampled beside voxel (" << voxel.x << ", " << voxel.y << ", " << voxel.z
+       << "), which no kernel reaches";
+  throw std::logic_error(text.str());
+}
+
+Surroundings surroundings(const Lattice& lattice, const Vec3& position) {
+  return around({place(lattice, 0, position[0]), place(lattice, 1, position[1]), place(lattice, 2, position[2])});
+}
 
 std::vector<Vec3> sample_trilinear(const Lattice& lattice, const RatioView& ratio, const Columns3& position) {
   std::vector<Vec3> result(position[0].size());

@@ -9,6 +9,18 @@
 
 namespace grainvdb {
 
+/// A voxel beside a position and its trilinear weight there. The voxel may lie one outside the stored period.
+struct Surrounding {
+  Coord voxel;
+  double weight = 0;
+};
+/// The eight voxels around a position, the lowest first; the weights add up to 1.
+using Surroundings = std::array<Surrounding, 8>;
+Surroundings surroundings(const Lattice& lattice, const Vec3& position);
+
+/// Throws std::logic_error unless the sum of weights at a voxel that is sampled is positive.
+void require_reached(const Coord& voxel, double total);
+
 /// A vector ratio on leaves: channels first … first+2 of `numerator` over one channel of `denominator`. Their
 /// topologies may differ.
 struct RatioView {
