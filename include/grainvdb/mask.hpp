@@ -25,7 +25,8 @@ enum class Reason : std::uint32_t {
   degenerate_strain_axes =
       1u << 9,                ///< principal strain rates closer than the gap, or no shearing: coaxiality undefined
   tensile_stress = 1u << 10,  ///< a principal stress is tensile or zero: Mohr-Coulomb ratio undefined
-  negative_temperature = 1u << 11,  ///< the gradient part exceeds the one-pass variance: temperature undefined
+  negative_temperature = 1u << 11,  ///< the gradient part exceeds the one-pass variance: no T, no δω²
+  lone_particles = 1u << 12,        ///< particles are their own mean: T, δω² without self-weight undefined
 };
 
 struct ReasonInfo {

@@ -59,6 +59,7 @@ struct Moment {
     particles,           ///< Σ_α q_α W(x - x_α), q from `values`
     particle_gradients,  ///< Σ_α q_α ∂_j W(x - x_α), three channels (j) per value of q
     second_moments,      ///< the channels of SecondMoments, from q = w, w v
+    particle_squares,    ///< Σ_α q_α W(x - x_α)²
     contacts,            ///< Σ over half branches of q ∫₀¹ W(x - x_α + s a) ds
     voxels               ///< a function of other moments of the same frame at the same voxel
   };
@@ -117,6 +118,10 @@ class FrameView {
   /// or mean_needs (`interpolate_mean`).
   virtual std::vector<Vec3> interpolate_frame(const Moment& numerator, const Moment& denominator) const = 0;
   virtual std::vector<Vec3> interpolate_mean(const Moment& numerator, const Moment& denominator) const = 0;
+
+  /// How much of the variance of independent particle values is left in their deviations from interpolate_frame with
+  /// this denominator, at every particle: Σ_β (δ_αβ - w_αβ)², w_αβ the share of particle β in the value at α.
+  virtual std::vector<double> deviation_factors(const Moment& denominator) const = 0;
 
   /// The same with both moments summed over the `homogeneous` axes first, and linear interpolation along the others.
   virtual std::vector<Vec3> interpolate_frame_profile(const Moment& numerator, const Moment& denominator,

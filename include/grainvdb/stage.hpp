@@ -3,6 +3,7 @@
 /// knows. The registry of stages alone feeds the graph, `grainvdb stages`, the validation and the documentation.
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,13 @@ class StageInput {
   virtual Mask& mask() const = 0;
 };
 
+/// An option whose value does not go with those of others.
+struct OptionConflict {
+  std::string option;
+  std::string found;
+  std::string expected;
+};
+
 struct Stage {
   std::string name;  ///< of the field it gives
   int components = 1;
@@ -49,6 +57,8 @@ struct Stage {
   std::string description;  ///< one line
   std::string equation;     ///< formula with its tag
   std::vector<OptionInfo> options{};
+  /// Option values that are refused together where the stage is asked for; empty where none are.
+  std::function<std::optional<OptionConflict>(const StageSettings&)> conflict{};
   std::function<StageNeeds(const StageSettings&)> needs;
   /// Fills `out` at every active voxel; leaves NaN and a reason in the mask where the field is undefined. Empty for the
   /// one stage that makes no field of its own: `mask`, the reasons gathered from all others.

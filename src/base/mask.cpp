@@ -15,7 +15,9 @@ const std::vector<ReasonInfo>& reasons() {
       {Reason::degenerate_stress_axes, "degenerate_stress_axes", "principal stresses too close: axes undefined"},
       {Reason::degenerate_strain_axes, "degenerate_strain_axes", "principal strain rates too close: axes undefined"},
       {Reason::tensile_stress, "tensile_stress", "a principal stress is not compressive: Mohr-Coulomb ratio undefined"},
-      {Reason::negative_temperature, "negative_temperature", "gradient part exceeds the one-pass variance"},
+      {Reason::negative_temperature, "negative_temperature",
+       "gradient part exceeds the one-pass variance: no T, no dw^2"},
+      {Reason::lone_particles, "lone_particles", "particles are their own mean: no fluctuation without self-weight"},
   };
   return all;
 }

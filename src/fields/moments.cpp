@@ -66,6 +66,10 @@ Moment velocity_sum(const StageSettings& s) {
   return vector_moment(velocity_weight(s), Column::velocity, "velocity", &Particles::velocity);
 }
 
+Moment spin_sum() {
+  return vector_moment(Weight::volume, Column::angular_velocity, "angular velocity", &Particles::angular_velocity);
+}
+
 }  // namespace
 
 MomentPtr volume_moment() {
@@ -89,8 +93,13 @@ MomentPtr volume_diameter_moment() {
 }
 
 MomentPtr volume_spin_moment() {
-  return std::make_shared<const Moment>(
-      vector_moment(Weight::volume, Column::angular_velocity, "angular velocity", &Particles::angular_velocity));
+  return std::make_shared<const Moment>(spin_sum());
+}
+MomentPtr volume_spin_gradient() {
+  return gradient_of(spin_sum());
+}
+MomentPtr volume_gradient() {
+  return gradient_of(weight_moment(Weight::volume));
 }
 
 MomentPtr velocity_numerator(const StageSettings& s) {

@@ -20,7 +20,11 @@ MomentPtr volume_spin_moment();
 MomentPtr velocity_numerator(const StageSettings& settings);
 MomentPtr velocity_denominator(const StageSettings& settings);
 
-/// Σ w v_i ∂_j W (nine channels, 3 i + j) and Σ w ∂_j W (three channels).
+/// Σ V ω_i ∂_j W (nine channels, 3 i + j) and Σ V ∂_j W (three channels).
+MomentPtr volume_spin_gradient();
+MomentPtr volume_gradient();
+
+/// The same for velocity_numerator and velocity_denominator.
 MomentPtr velocity_numerator_gradient(const StageSettings& settings);
 MomentPtr velocity_denominator_gradient(const StageSettings& settings);
 

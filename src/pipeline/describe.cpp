@@ -28,6 +28,8 @@ const char* kind_name(Moment::Kind kind) {
   switch (kind) {
     case Moment::Kind::particles:
       return "splat of particles";
+    case Moment::Kind::particle_squares:
+      return "splat of particles with the square of the kernel";
     case Moment::Kind::particle_gradients:
       return "splat of particles with the kernel's gradient";
     case Moment::Kind::second_moments:

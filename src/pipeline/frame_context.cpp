@@ -6,6 +6,7 @@
 #include "base/parallel.hpp"
 #include "bin/leaf_bounds.hpp"
 #include "grainvdb/stage.hpp"
+#include "splat/own_weight.hpp"
 #include "splat/sample.hpp"
 #include "splat/second_moments.hpp"
 
@@ -109,7 +110,9 @@ void FrameContext::splat(const SplatGroup& group, const Started& started, Moment
 }
 
 LeafBuffers FrameContext::splat_in_double(const SplatGroup& group, const Started& started) const {
-  const auto splat = group.kind() == Moment::Kind::particle_gradients ? splat_particle_gradients : splat_particles;
+  const auto splat = group.kind() == Moment::Kind::particle_gradients ? splat_particle_gradients
+                     : group.kind() == Moment::Kind::particle_squares ? splat_particle_squares
+                                                                      : splat_particles;
   return splat(setting_.lattice, setting_.kernel, *buckets_, topology_, started.values, group.value_count());
 }
 
@@ -185,6 +188,14 @@ std::vector<Vec3> FrameContext::interpolate_frame(const Moment& numerator, const
   const Place d = places_.at(denominator.name);
   return sample_trilinear(setting_.lattice, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel},
                           particles().position);
+}
+
+std::vector<double> FrameContext::deviation_factors(const Moment& denominator) const {
+  const Place d = places_.at(denominator.name);
+  std::vector<double> weight(particles().size());
+  denominator.values(*this, weight);
+  return grainvdb::deviation_factors(setting_.lattice, setting_.kernel, particles().position, weight,
+                                     d.buffers->blocks(), d.channel);
 }
 
 std::vector<Vec3> FrameContext::interpolate_frame_profile(const Moment& numerator, const Moment& denominator,

@@ -48,6 +48,7 @@ class FrameContext : public FrameView {
   const HalfBranches& branches() const override { return material_->branches; }
   std::vector<Vec3> interpolate_frame(const Moment& numerator, const Moment& denominator) const override;
   std::vector<Vec3> interpolate_mean(const Moment& numerator, const Moment& denominator) const override;
+  std::vector<double> deviation_factors(const Moment& denominator) const override;
   std::vector<Vec3> interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
                                               std::array<bool, 3> homogeneous) const override;
 

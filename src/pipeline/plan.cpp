@@ -58,6 +58,14 @@ class StageOrder {
                          join_choices(names),
                          did_you_mean(field, names)});
     }
+    if (const auto conflict = stage->conflict ? stage->conflict(pipeline_.stages) : std::nullopt) {
+      const std::string key = "stages." + field + "." + conflict->option;
+      throw ConfigError({pipeline_.location(key),
+                         "the options of stage " + quote_text(field) + " do not go together",
+                         conflict->option + " " + conflict->found,
+                         conflict->expected,
+                         {}});
+    }
     const StageNeeds needs = stage->needs ? stage->needs(pipeline_.stages) : StageNeeds{};
     path_.push_back(field);
     for (const std::string& need : needs.fields) visit(need, "stage " + quote_text(field));

@@ -51,7 +51,8 @@ SweepGroups::Pass group_pass(const std::vector<MomentPtr>& pass, const std::set<
 }  // namespace
 
 bool SplatGroup::buffered() const {
-  return kind() == Moment::Kind::particle_gradients || (kind() == Moment::Kind::particles && moments[0]->in_double);
+  return kind() == Moment::Kind::particle_gradients || kind() == Moment::Kind::particle_squares ||
+         (kind() == Moment::Kind::particles && moments[0]->in_double);
 }
 
 int SplatGroup::buffered_channels() const {

@@ -21,21 +21,37 @@ void add_scaled(double* sum, const double* q, double w, std::size_t channels) {
   for (std::size_t c = 0; c < channels; ++c) sum[c] += q[c] * w;
 }
 
-}  // namespace
-
-LeafBuffers splat_particles(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
-                            std::shared_ptr<const Topology> topology, std::span<const double> q, int channels) {
+// Σ_α q_α weight(|x - x_α|²).
+template <class Weight>
+LeafBuffers splat_weighed(const Lattice& lattice, double cutoff, const Buckets& buckets,
+                          std::shared_ptr<const Topology> topology, std::span<const double> q, int channels,
+                          const Weight& weight) {
   const double h = lattice.voxel();
-  const double reach = kernel.cutoff() / h;
+  const double reach = cutoff / h;
   const auto width = static_cast<std::size_t>(channels);
   return gather(lattice, buckets, reach, std::move(topology), channels,
                 [&](std::size_t entry, const LeafWindow& window, double* sums) {
                   const double* values = q.data() + buckets.point[entry] * width;
                   for_each_voxel(window, entry_index(buckets, entry), reach, [&](int offset, const Vec3& d) {
-                    const double w = kernel.value(distance2(d, h));
-                    add_scaled(sums + static_cast<std::size_t>(offset) * width, values, w, width);
+                    add_scaled(sums + static_cast<std::size_t>(offset) * width, values, weight(distance2(d, h)), width);
                   });
                 });
+}
+
+}  // namespace
+
+LeafBuffers splat_particles(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
+                            std::shared_ptr<const Topology> topology, std::span<const double> q, int channels) {
+  return splat_weighed(lattice, kernel.cutoff(), buckets, std::move(topology), q, channels,
+                       [&](double r2) { return kernel.value(r2); });
+}
+
+LeafBuffers splat_particle_squares(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
+                                   std::shared_ptr<const Topology> topology, std::span<const double> q, int channels) {
+  return splat_weighed(lattice, kernel.cutoff(), buckets, std::move(topology), q, channels, [&](double r2) {
+    const double w = kernel.value(r2);
+    return w * w;
+  });
 }
 
 LeafBuffers splat_particle_gradients(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,

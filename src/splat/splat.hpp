@@ -37,6 +37,10 @@ void splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, cons
                           const Topology& topology, std::span<const double> q, std::span<const int> weight_of,
                           const LeafConsumer& consume);
 
+/// Σ_α q_α W(x - x_α)², in double precision.
+LeafBuffers splat_particle_squares(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
+                                   std::shared_ptr<const Topology> topology, std::span<const double> q, int channels);
+
 /// Σ_α q_α ∂_j W(x - x_α): channel 3 v + j for value v and axis j. `q` is laid out [point][value].
 LeafBuffers splat_particle_gradients(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
                                      std::shared_ptr<const Topology> topology, std::span<const double> q, int values);

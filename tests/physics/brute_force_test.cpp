@@ -3,6 +3,7 @@
 // Two comparisons are made. "From the particles": the brute force does everything in double; each value may be off by
 // what storing floats along the way costs, carried through the formulas. "From the program's own fields": derived
 // fields are formed again from the float fields that were written, which leaves only their own rounding.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +11,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -72,6 +74,29 @@ void one_pass_corrected(Pipeline& p) {
 void mass_one_pass_corrected(Pipeline& p) {
   one_pass_corrected(p);
   set_option(p, "velocity", "weighting", text("mass"));
+  set_option(p, "rotational_fluctuation", "mode", text("one_pass_corrected"));
+}
+
+void without_self_weight(Pipeline& p) {
+  set_option(p, "temperature", "self_weight", text("corrected"));
+  set_option(p, "rotational_fluctuation", "self_weight", text("corrected"));
+}
+
+void mass_without_self_weight(Pipeline& p) {
+  without_self_weight(p);
+  set_option(p, "velocity", "weighting", text("mass"));
+  set_option(p, "rotational_fluctuation", "mode", text("one_pass"));
+}
+
+void one_pass_corrected_without_self_weight(Pipeline& p) {
+  without_self_weight(p);
+  set_option(p, "temperature", "mode", text("one_pass_corrected"));
+  set_option(p, "rotational_fluctuation", "mode", text("one_pass_corrected"));
+  set_option(p, "angular_velocity_gradient", "method", text("kernel"));
+}
+
+bool gradient_taken_off(const Pipeline& p, const char* stage) {
+  return option<std::string>(p.stages, stage, "mode") == "one_pass_corrected";
 }
 
 const char* const sums[] = {"phi",
@@ -83,6 +108,10 @@ const char* const sums[] = {"phi",
                             "rotational_fluctuation",
                             "contact_stress",
                             "kinetic_stress"};
+
+const char* const fluctuations[] = {"temperature", "rotational_fluctuation"};
+const std::pair<const char*, const char*> gradients[] = {{"velocity_gradient", "gradient_by_kernel"},
+                                                         {"angular_velocity_gradient", "spin_gradient_by_kernel"}};
 
 class BruteForce : public ::testing::TestWithParam<Case> {
  protected:
@@ -101,8 +130,9 @@ class BruteForce : public ::testing::TestWithParam<Case> {
 
   const VoxelBox& box() const { return reference->box; }
   const Written& written() const { return result.only(); }
-  bool by_kernel() const { return option<std::string>(pipeline.stages, "velocity_gradient", "method") == "kernel"; }
-  bool corrected() const { return option<std::string>(pipeline.stages, "temperature", "mode") == "one_pass_corrected"; }
+  bool by_kernel(const char* gradient) const {
+    return option<std::string>(pipeline.stages, gradient, "method") == "kernel";
+  }
 
   void check(const std::string& name, const std::function<Uncertain(std::size_t, int)>& expected,
              const std::function<double(std::size_t, int)>& magnitude, const std::string& label) {
@@ -145,7 +175,9 @@ void BruteForce::check_voxels() {
 
 void BruteForce::check_sums() {
   for (const std::string name : sums) {
-    if (name == "temperature" && corrected()) continue;
+    if (std::count(std::begin(fluctuations), std::end(fluctuations), name) > 0 &&
+        gradient_taken_off(pipeline, name.c_str()))
+      continue;
     const ReferenceField& f = reference->fields.at(name);
     check(
         name, [&](std::size_t n, int c) { return f.expected(n, c); },
@@ -160,11 +192,13 @@ void BruteForce::check_sums() {
                kinetic.magnitude[9 * n + static_cast<std::size_t>(c)];
       },
       "sums ");
-  if (!by_kernel()) return;
-  const ReferenceField& gradient = reference->fields.at("gradient_by_kernel");
-  check(
-      "velocity_gradient", [&](std::size_t n, int c) { return gradient.expected(n, c); },
-      [&](std::size_t n, int c) { return gradient.magnitude[gradient.index(n, c)]; }, "sums ");
+  for (const auto& [name, source] : gradients) {
+    if (!by_kernel(name)) continue;
+    const ReferenceField& gradient = reference->fields.at(source);
+    check(
+        name, [&](std::size_t n, int c) { return gradient.expected(n, c); },
+        [&](std::size_t n, int c) { return gradient.magnitude[gradient.index(n, c)]; }, "sums ");
+  }
 }
 
 void BruteForce::check_derived_from_particles() {
@@ -177,7 +211,9 @@ void BruteForce::check_derived_from_particles() {
       for (int c = 0; c < f.components; ++c) u.values.push_back(f.expected(n, c));
   };
   for (const char* name : sums) add(name, name);
-  if (by_kernel()) add("velocity_gradient", "gradient_by_kernel");
+  for (const auto& [name, source] : gradients)
+    if (by_kernel(name)) add(name, source);
+  for (const char* name : {"temperature_share", "rotational_fluctuation_share"}) add(name, name);
   UncertainField& stress = base["stress"];
   stress.components = 9;
   for (std::size_t i = 0; i < base["contact_stress"].values.size(); ++i)
@@ -187,22 +223,28 @@ void BruteForce::check_derived_from_particles() {
 
 void BruteForce::check_derived_from_own_fields() {
   UncertainFields base;
-  for (const char* name : {"phi", "density", "velocity", "mean_diameter", "temperature", "rotational_fluctuation",
-                           "stress", "velocity_gradient"}) {
-    if (std::string(name) == "velocity_gradient" && !by_kernel()) continue;
+  for (const char* name : {"phi", "density", "velocity", "mean_diameter", "temperature", "angular_velocity",
+                           "rotational_fluctuation", "stress", "velocity_gradient", "angular_velocity_gradient"}) {
+    if (std::string(name).ends_with("_gradient") && !by_kernel(name)) continue;
     const FieldCopy& f = written().field(name);
     UncertainField& u = base[name];
     u.components = f.meta.components;
     for (std::size_t n = 0; n < box().size(); ++n)
       for (int c = 0; c < u.components; ++c) u.values.push_back({static_cast<double>(f.at(box().coord(n), c)), 0});
   }
-  if (corrected()) {
-    // The variance before the correction is written by the other mode.
-    Pipeline uncorrected = pipeline;
-    set_option(uncorrected, "temperature", "mode", text("one_pass"));
-    const Result other = run(uncorrected, scene.frames);
-    for (std::size_t n = 0; n < box().size(); ++n)
-      base["temperature"].values[n].value = static_cast<double>(other.only().field("temperature").at(box().coord(n)));
+  // Those before the gradient part is taken off are written by the other mode.
+  Pipeline uncorrected = pipeline;
+  for (const char* name : fluctuations)
+    if (gradient_taken_off(pipeline, name)) set_option(uncorrected, name, "mode", text("one_pass"));
+  const Result other = run(uncorrected, scene.frames);
+  for (const std::string name : fluctuations) {
+    // What was left of the variance is not written.
+    const ReferenceField& share = reference->fields.at(name + "_share");
+    for (std::size_t n = 0; n < box().size(); ++n) {
+      base[name].values[n].value = static_cast<double>(other.only().field(name).at(box().coord(n)));
+      base[name + "_share"].values.push_back(
+          option<std::string>(pipeline.stages, name, "self_weight") == "none" ? Uncertain{1, 0} : share.expected(n));
+    }
   }
   const Derived d = derive(box(), active, base, pipeline);
   check_derived(d, "derived from own fields ");
@@ -222,14 +264,20 @@ TEST_P(BruteForce, EveryFieldAtEveryVoxel) {
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, BruteForce,
-    ::testing::Values(Case{"periodic_defaults", periodic_scene, defaults},
-                      Case{"periodic_mass_profile_kernel", periodic_scene, mass_profile_kernel},
-                      Case{"periodic_one_pass_corrected", periodic_scene, one_pass_corrected},
-                      Case{"walled_defaults", walled_scene, defaults},
-                      Case{"walled_mass_profile_kernel", walled_scene, mass_profile_kernel},
-                      Case{"walled_one_pass", walled_scene, one_pass},
-                      Case{"walled_mass_one_pass_corrected", walled_scene, mass_one_pass_corrected},
-                      Case{"dilute_defaults", dilute_scene, defaults}, Case{"dilute_one_pass", dilute_scene, one_pass}),
+    ::testing::Values(
+        Case{"periodic_defaults", periodic_scene, defaults},
+        Case{"periodic_mass_profile_kernel", periodic_scene, mass_profile_kernel},
+        Case{"periodic_one_pass_corrected", periodic_scene, one_pass_corrected},
+        Case{"walled_defaults", walled_scene, defaults},
+        Case{"walled_mass_profile_kernel", walled_scene, mass_profile_kernel},
+        Case{"walled_one_pass", walled_scene, one_pass},
+        Case{"walled_mass_one_pass_corrected", walled_scene, mass_one_pass_corrected},
+        Case{"dilute_defaults", dilute_scene, defaults}, Case{"dilute_one_pass", dilute_scene, one_pass},
+        Case{"periodic_without_self_weight", periodic_scene, without_self_weight},
+        Case{"walled_mass_without_self_weight", walled_scene, mass_without_self_weight},
+        Case{"walled_one_pass_corrected_without_self_weight", walled_scene, one_pass_corrected_without_self_weight},
+        Case{"dilute_without_self_weight", dilute_scene, without_self_weight},
+        Case{"dilute_one_pass_corrected_without_self_weight", dilute_scene, one_pass_corrected_without_self_weight}),
     [](const auto& c) { return std::string(c.param.name); });
 
 }  // namespace

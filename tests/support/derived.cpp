@@ -224,7 +224,7 @@ void ratio_fields(Voxel& v, const Pipeline& p) {
 
 /// ∂u_i/∂x_j by differences: central, towards the one side that has neighbours (three points, or two), or none.
 void central_gradient(Voxel& v, const VoxelBox& box, const std::vector<bool>& active, const UncertainField& u,
-                      std::size_t n) {
+                      std::size_t n, const std::string& field) {
   const auto defined = [&](int axis, int by) -> std::optional<std::size_t> {
     const auto m = box.index(shifted(box.coord(n), axis, by));
     if (!m || !active[*m] || u.at(*m).undefined()) return std::nullopt;
@@ -251,23 +251,38 @@ void central_gradient(Voxel& v, const VoxelBox& box, const std::vector<bool>& ac
         d = next ? static_cast<double>(side) * ((4.0 * u1 - 3.0 * u0 - u.at(*next, i)) / (2 * h))
                  : static_cast<double>(side) * ((u1 - u0) / h);
       }
-      v.put("velocity_gradient", 3 * i + axis, d);
+      v.put(field, 3 * i + axis, d);
     }
   }
 }
 
-/// T - (c²/12) L:L, undefined where negative.
-void correct_temperature(Voxel& v, const Pipeline& p, const UncertainField& one_pass, std::size_t n) {
+/// The sums of deviations that are divided by a share of the variance, and the gradient of their mean.
+struct Fluctuation {
+  const char* field;
+  const char* gradient;
+};
+constexpr Fluctuation fluctuations[] = {{"temperature", "velocity_gradient"},
+                                        {"rotational_fluctuation", "angular_velocity_gradient"}};
+
+std::string share_name(const Fluctuation& f) {
+  return std::string(f.field) + "_share";
+}
+bool corrected(const Fluctuation& f, const Pipeline& p) {
+  return option<std::string>(p.stages, f.field, "mode") == "one_pass_corrected";
+}
+
+/// T - (c²/12) L:L over what is left of the variance, undefined where negative.
+void correct_fluctuation(Voxel& v, const Pipeline& p, const Fluctuation& f, const Uncertain& one_pass) {
   Uncertain squares;
-  for (const Uncertain& l : v.tensor("velocity_gradient")) squares = squares + l * l;
-  const Uncertain t = one_pass.at(n) - (p.cutoff * p.cutoff / 12) * squares;
+  for (const Uncertain& l : v.tensor(f.gradient)) squares = squares + l * l;
+  const Uncertain t = one_pass - (p.cutoff * p.cutoff / 12) * squares / v.get(share_name(f));
   if (t.undefined()) {
-    v.put("temperature", 0, undefined_value());
+    v.put(f.field, 0, undefined_value());
     return;
   }
   const Verdict negative = exceeds(-1.0 * t, 0);
   v.note(Reason::negative_temperature, negative);
-  v.put("temperature", 0, unless({negative}, t));
+  v.put(f.field, 0, unless({negative}, t));
 }
 
 }  // namespace
@@ -282,8 +297,9 @@ bool is_in_doubt(const Uncertain& a) {
 Derived derive(const VoxelBox& box, const std::vector<bool>& active, const UncertainFields& base,
                const Pipeline& pipeline) {
   Derived out{{}, std::vector<std::uint32_t>(box.size()), std::vector<std::uint32_t>(box.size())};
-  const bool central = option<std::string>(pipeline.stages, "velocity_gradient", "method") == "central";
-  const bool corrected = option<std::string>(pipeline.stages, "temperature", "mode") == "one_pass_corrected";
+  const auto central = [&](const char* gradient) {
+    return option<std::string>(pipeline.stages, gradient, "method") == "central";
+  };
   const auto add = [&](const std::string& name, int components) {
     out.fields[name] = {components,
                         std::vector<Uncertain>(box.size() * static_cast<std::size_t>(components), undefined_value())};
@@ -295,15 +311,23 @@ Derived derive(const VoxelBox& box, const std::vector<bool>& active, const Uncer
   add("principal_stress", 3);
   add("slip_lines", 6);
   add("principal_axes", 9);
-  if (central) add("velocity_gradient", 9);
-  if (corrected) add("temperature", 1);
+  for (const Fluctuation& f : fluctuations) {
+    if (central(f.gradient)) add(f.gradient, 9);
+    if (corrected(f, pipeline)) add(f.field, 1);
+  }
 
   for (std::size_t n = 0; n < box.size(); ++n) {
     if (!active[n]) continue;
     Voxel v(base, out, n);
     v.note(Reason::no_material, {!(base.at("phi").at(n).value > 0), true});
-    if (central) central_gradient(v, box, active, base.at("velocity"), n);
-    if (corrected) correct_temperature(v, pipeline, base.at("temperature"), n);
+    if (central("velocity_gradient")) central_gradient(v, box, active, base.at("velocity"), n, "velocity_gradient");
+    if (central("angular_velocity_gradient"))
+      central_gradient(v, box, active, base.at("angular_velocity"), n, "angular_velocity_gradient");
+    for (const Fluctuation& f : fluctuations) {
+      // No grain alone is between nothing and a thousandth of its own mean.
+      v.note(Reason::lone_particles, {v.get(share_name(f)).value <= 1e-3, true});
+      if (corrected(f, pipeline)) correct_fluctuation(v, pipeline, f, base.at(f.field).at(n));
+    }
     stress_fields(v, pipeline);
     rate_fields(v, pipeline);
     ratio_fields(v, pipeline);

@@ -35,9 +35,10 @@ struct Derived {
 Uncertain in_doubt();
 bool is_in_doubt(const Uncertain& a);
 
-/// From phi, density, velocity, mean_diameter, temperature, rotational_fluctuation and stress at the active voxels, and
-/// velocity_gradient where it is formed by kernel gradients. Gives velocity_gradient (central), temperature (where it
-/// is one_pass_corrected) and all fields made of these. no_material is where phi is not positive.
+/// From phi, density, velocity, angular_velocity, mean_diameter, temperature, rotational_fluctuation, the shares of the
+/// variance in these two, and stress at the active voxels, and velocity_gradient and angular_velocity_gradient where
+/// they are formed by kernel gradients. Gives the gradients (central), temperature and rotational_fluctuation (where
+/// they are one_pass_corrected) and all fields made of these. no_material is where phi is not positive.
 Derived derive(const VoxelBox& box, const std::vector<bool>& active, const UncertainFields& base,
                const Pipeline& pipeline);
 

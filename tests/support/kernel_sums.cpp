@@ -194,6 +194,18 @@ Sums particle_sums(const VoxelBox& box, double cutoff, const Particles& p, const
                             [&](const Vec3&, double r) { return std::array{lucy(r, cutoff)}; });
 }
 
+Sums square_sums(const VoxelBox& box, double cutoff, const Particles& p, const std::vector<double>& q, int channels) {
+  return sum_over_particles(box, cutoff, p, q, channels, 1,
+                            [&](const Vec3&, double r) { return std::array{lucy(r, cutoff) * lucy(r, cutoff)}; });
+}
+
+double lucy_of_images(const Box& box, const Vec3& d, double cutoff) {
+  double sum = 0;
+  for_each_image(box, d, {0, 0, 0}, {cutoff, cutoff, cutoff},
+                 [&](const Vec3& image) { sum += lucy(std::sqrt(dot(image, image)), cutoff); });
+  return sum;
+}
+
 Sums gradient_sums(const VoxelBox& box, double cutoff, const Particles& p, const std::vector<double>& q, int values) {
   const double scale = -1260 / (16 * std::numbers::pi * std::pow(cutoff, 5));
   return sum_over_particles(box, cutoff, p, q, values, 3, [&](const Vec3& d, double r) {

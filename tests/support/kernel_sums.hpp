@@ -28,6 +28,9 @@ struct Sums {
   std::vector<int> reached;       ///< frames in which a kernel reached the voxel
 };
 
+/// Σ W(|d|) over the images of the difference d.
+double lucy_of_images(const Box& box, const Vec3& d, double cutoff);
+
 /// Lucy's W at distance r, written as in physics eq. (9).
 double lucy(double r, double cutoff);
 
@@ -51,6 +54,8 @@ Branches branches_of(const Frame& frame);
 
 /// Σ q_α W. `q` is laid out [particle][channel].
 Sums particle_sums(const VoxelBox& box, double cutoff, const Particles& p, const std::vector<double>& q, int channels);
+/// Σ q_α W².
+Sums square_sums(const VoxelBox& box, double cutoff, const Particles& p, const std::vector<double>& q, int channels);
 /// Σ q_α ∂_j W, channel 3 v + j.
 Sums gradient_sums(const VoxelBox& box, double cutoff, const Particles& p, const std::vector<double>& q, int values);
 /// Σ q ∫₀¹ W(x - x_α + s a) ds; gauss_points 0 is the integral itself, otherwise the rule of so many points.

@@ -13,6 +13,11 @@ namespace {
 /// denominator both carry the error of their sums.
 constexpr double velocity_rounding = 2 * sum_rounding;
 
+/// Error of what is left of the variance (held to 1e-5 by its own tests), relative to Σ V W.
+constexpr double share_rounding = 1e-5;
+/// No fluctuation is defined below this share.
+constexpr double least_share = 1e-3;
+
 std::string text_option(const Pipeline& p, const std::string& stage, const std::string& name) {
   return option<std::string>(p.stages, stage, name);
 }
@@ -40,12 +45,13 @@ std::vector<double> per_particle(const Particles& p, int channels, const F& f) {
 /// All sums of one frame, or their sum over frames.
 struct Moments {
   Sums volume, mass, weight, momentum, diameter, spin, fluctuation, spin_fluctuation, kinetic, contact,
-      momentum_gradient, weight_gradient;
+      momentum_gradient, weight_gradient, spin_gradient, volume_gradient, share, spin_share;
 
   Moments& operator+=(const Moments& o) {
     for (auto member : {&Moments::volume, &Moments::mass, &Moments::weight, &Moments::momentum, &Moments::diameter,
                         &Moments::spin, &Moments::fluctuation, &Moments::spin_fluctuation, &Moments::kinetic,
-                        &Moments::contact, &Moments::momentum_gradient, &Moments::weight_gradient})
+                        &Moments::contact, &Moments::momentum_gradient, &Moments::weight_gradient,
+                        &Moments::spin_gradient, &Moments::volume_gradient, &Moments::share, &Moments::spin_share})
       this->*member += o.*member;
     return *this;
   }
@@ -81,7 +87,13 @@ class Grainer {
               contact(frame),
               gradient_sums(box_, pipeline_.cutoff, p, per_particle(p, 3, momentum_of), 3),
               gradient_sums(box_, pipeline_.cutoff, p,
-                            per_particle(p, 1, [&](std::size_t i, std::size_t) { return w(i); }), 1)};
+                            per_particle(p, 1, [&](std::size_t i, std::size_t) { return w(i); }), 1),
+              gradient_sums(box_, pipeline_.cutoff, p, per_particle(p, 3, spin_of), 3),
+              gradient_sums(box_, pipeline_.cutoff, p,
+                            per_particle(p, 1, [&](std::size_t i, std::size_t) { return volume(p, i); }), 1),
+              share(p, "temperature", w, weight, v),
+              share(
+                  p, "rotational_fluctuation", [&](std::size_t i) { return volume(p, i); }, v, v)};
     return m;
   }
 
@@ -128,6 +140,27 @@ class Grainer {
                                         return volume(p, i) * (2 * std::sqrt(3 * square) * e + e * e);
                                       }),
                          2);
+  }
+
+  /// Σ V W times what the deviations keep of a variance; Σ V W itself where self-weight is left in.
+  template <class Weight>
+  Sums share(const Particles& p, const std::string& stage, const Weight& weight, const Sums& denominator,
+             const Sums& volumes) const {
+    if (text_option(pipeline_, stage, "self_weight") == "none") return volumes;
+    const auto per = [&](const auto& f) {
+      return per_particle(p, 1, [&](std::size_t i, std::size_t) { return f(i); });
+    };
+    if (!text_option(pipeline_, stage, "mode").starts_with("one_pass")) {
+      const std::vector<double> factor =
+          deviation_factors(box_, pipeline_.cutoff, per(weight), denominator, p.position);
+      return particle_sums(box_, pipeline_.cutoff, p, per([&](std::size_t i) { return volume(p, i) * factor[i]; }), 1);
+    }
+    Sums result = volumes;
+    const Sums squares =
+        square_sums(box_, pipeline_.cutoff, p, per([&](std::size_t i) { return std::pow(volume(p, i), 2); }), 1);
+    for (std::size_t n = 0; n < box_.size(); ++n)
+      if (volumes.at(n) > 0) result.at(n) = std::max(0.0, volumes.at(n) - squares.at(n) / volumes.at(n));
+    return result;
   }
 
   /// The same about the volume-weighted mean at the voxel. The magnitude is that of the second moments whose
@@ -196,19 +229,38 @@ ReferenceField ratio_of(const Sums& above, int components, const Sums& below, st
   return f;
 }
 
+/// A ratio by what is left of the variance, undefined where that is next to nothing. The shares carry errors of
+/// 1e-5 Σ V W.
+ReferenceField fluctuation_of(const Sums& squares, const Sums& share, const Sums& volume) {
+  ReferenceField f = ratio_of(squares, 1, share, 1);
+  for (std::size_t n = 0; n < volume.reached.size(); ++n) {
+    if (!(share.at(n) > least_share * volume.at(n))) f.value[n] = std::numeric_limits<double>::quiet_NaN();
+    if (share.at(n) != volume.at(n)) f.floor[n] += share_rounding * volume.at(n) / share.at(n) * f.value[n];
+  }
+  return f;
+}
+
+/// What is left of the variance.
+ReferenceField share_of(const Sums& share, const Sums& volume) {
+  ReferenceField f = ratio_of(share, 1, volume);
+  for (double& x : f.floor) x = share_rounding;
+  return f;
+}
+
 /// The quotient rule on u = Σ w v W/Σ w W.
-ReferenceField gradient_by_kernel(const Moments& m) {
+ReferenceField gradient_by_kernel(const Sums& above, const Sums& below, const Sums& above_gradient,
+                                  const Sums& below_gradient) {
   ReferenceField f;
   f.components = 9;
-  for (std::size_t n = 0; n < m.weight.reached.size(); ++n)
+  for (std::size_t n = 0; n < below.reached.size(); ++n)
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
-        const double w = m.weight.at(n);
-        const double u = m.momentum.at(n, i) / w;
-        const double value = (m.momentum_gradient.at(n, 3 * i + j) - u * m.weight_gradient.at(n, j)) / w;
+        const double w = below.at(n);
+        const double u = above.at(n, i) / w;
+        const double value = (above_gradient.at(n, 3 * i + j) - u * below_gradient.at(n, j)) / w;
         f.value.push_back(w > 0 ? value : std::numeric_limits<double>::quiet_NaN());
-        f.magnitude.push_back(
-            (m.momentum_gradient.size(n, 3 * i + j) + m.momentum.size(n, i) / w * m.weight_gradient.size(n, j)) / w);
+        f.magnitude.push_back((above_gradient.size(n, 3 * i + j) + above.size(n, i) / w * below_gradient.size(n, j)) /
+                              w);
         f.floor.push_back(0);
       }
   return f;
@@ -289,13 +341,18 @@ Reference coarse_grain(const std::vector<Frame>& frames, const Pipeline& pipelin
   fields["velocity"] = ratio_of(total.momentum, 3, total.weight);
   fields["mean_diameter"] = ratio_of(total.diameter, 1, total.volume);
   fields["angular_velocity"] = ratio_of(total.spin, 3, total.volume);
-  fields["temperature"] = ratio_of(total.fluctuation, 1, total.volume, 1);
-  fields["rotational_fluctuation"] = ratio_of(total.spin_fluctuation, 1, total.volume, 1);
+  fields["temperature"] = fluctuation_of(total.fluctuation, total.share, total.volume);
+  fields["temperature_share"] = share_of(total.share, total.volume);
+  fields["rotational_fluctuation"] = fluctuation_of(total.spin_fluctuation, total.spin_share, total.volume);
+  fields["rotational_fluctuation_share"] = share_of(total.spin_share, total.volume);
   fields["contact_stress"] = mean_of(total.contact, 9, count);
   fields["contact_stress"].rounding =
       text_option(pipeline, "contact_stress", "line_integral") == "exact" ? contact_sum_rounding : gauss_sum_rounding;
   fields["kinetic_stress"] = mean_of(total.kinetic, 9, count, 9);
-  fields["gradient_by_kernel"] = gradient_by_kernel(total);
+  fields["gradient_by_kernel"] =
+      gradient_by_kernel(total.momentum, total.weight, total.momentum_gradient, total.weight_gradient);
+  fields["spin_gradient_by_kernel"] =
+      gradient_by_kernel(total.spin, total.volume, total.spin_gradient, total.volume_gradient);
   return result;
 }
 

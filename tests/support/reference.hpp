@@ -45,7 +45,9 @@ struct Reference {
   std::vector<int> particle_frames;  ///< frames in which a particle's kernel reached the voxel
   std::vector<int> any_frames;       ///< the same for particles or contacts
   /// phi, density, velocity, mean_diameter, angular_velocity, temperature, rotational_fluctuation, contact_stress,
-  /// kinetic_stress, and gradient_by_kernel. temperature in mode one_pass_corrected is the uncorrected one.
+  /// kinetic_stress, gradient_by_kernel, and the shares of the variance that temperature and rotational_fluctuation
+  /// were divided by, temperature_share and rotational_fluctuation_share. In mode one_pass_corrected the gradient part
+  /// is still in them.
   std::map<std::string, ReferenceField> fields;
 };
 
@@ -58,6 +60,10 @@ Particles material(const Frame& frame, const Selection& selection);
 /// numerator/denominator at the voxels, interpolated trilinearly, periodic.
 std::vector<Vec3> interpolate(const VoxelBox& box, const Sums& numerator, const Sums& denominator,
                               const Columns3& position);
+/// Σ_j (δ_ij - w_ij)² at every particle i, w_ij the share that particle j has in a ratio of sums of weight × value over
+/// `denominator`, the sum of weights, interpolated so.
+std::vector<double> deviation_factors(const VoxelBox& box, double cutoff, const std::vector<double>& weight,
+                                      const Sums& denominator, const Columns3& position);
 /// The same with both summed over the homogeneous axes first.
 std::vector<Vec3> interpolate_profile(const VoxelBox& box, const Sums& numerator, const Sums& denominator,
                                       const Columns3& position, std::array<bool, 3> homogeneous);

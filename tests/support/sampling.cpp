@@ -57,6 +57,26 @@ std::vector<Vec3> interpolate(const VoxelBox& box, const Sums& numerator, const 
   return result;
 }
 
+std::vector<double> deviation_factors(const VoxelBox& box, double cutoff, const std::vector<double>& weight,
+                                      const Sums& denominator, const Columns3& position) {
+  std::vector<double> result;
+  const auto at = [&](std::size_t i) { return Vec3{position[0][i], position[1][i], position[2][i]}; };
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    double factor = 0;
+    for (std::size_t j = 0; j < weight.size(); ++j) {
+      const Vec3 x = at(j);
+      const Vec3 share = linear(box.to_index_space(at(i)), {false, false, false}, [&](const Coord& c) {
+        const Vec3 v = box.centre(c);
+        const double w = lucy_of_images(box.box(), {v[0] - x[0], v[1] - x[1], v[2] - x[2]}, cutoff);
+        return Vec3{weight[j] * w / denominator.at(box.index(c).value()), 0, 0};
+      });
+      factor += std::pow((i == j ? 1 : 0) - share[0], 2);
+    }
+    result.push_back(factor);
+  }
+  return result;
+}
+
 std::vector<Vec3> interpolate_profile(const VoxelBox& box, const Sums& numerator, const Sums& denominator,
                                       const Columns3& position, std::array<bool, 3> homogeneous) {
   // The stored voxel with its homogeneous coordinates set to zero names the profile's point.

@@ -142,6 +142,7 @@ FakeInput random_flow() {
   in.set("temperature", 1, scalar(temperature));
   in.set("rotational_fluctuation", 1, scalar(spin));
   in.set("velocity", 3, velocity);
+  in.set("angular_velocity", 3, velocity);
   in.set("stress", 9, stress);
   return in;
 }
@@ -154,8 +155,12 @@ TEST(BruteForce, EveryDerivedFieldAtEveryVoxel) {
   std::map<std::string, std::size_t> defined;
   std::map<std::string, std::size_t> masked;
   in.derive("velocity_gradient");
+  in.derive("angular_velocity_gradient");
   in.for_each([&](const Coord& c) {
     for (int k = 0; k < 9; ++k) {
+      const double of_spin = in.value("angular_velocity_gradient", c, k);
+      const double of_velocity = in.value("velocity_gradient", c, k);
+      EXPECT_TRUE(of_spin == of_velocity || (std::isnan(of_spin) && std::isnan(of_velocity)));
       const auto [expected, terms] = gradient(c, k / 3, k % 3);
       const double v = in.value("velocity_gradient", c, k);
       ASSERT_EQ(std::isnan(v), std::isnan(expected));

@@ -17,23 +17,16 @@ struct Expected {
 
 // The names, components and units that users and scripts rely on.
 TEST(DerivedStages, DescribeThemselves) {
-  const std::map<std::string, Expected> expected{{"velocity_gradient", {9, "1/s"}},
-                                                 {"shear_rate", {1, "1/s"}},
-                                                 {"pressure", {1, "Pa"}},
-                                                 {"shear_stress", {1, "Pa"}},
-                                                 {"mu", {1, "1"}},
-                                                 {"inertial_number", {1, "1"}},
-                                                 {"fluidity", {1, "1/s"}},
-                                                 {"gd_over_dv", {1, "1"}},
-                                                 {"rotational_temperature", {1, "m^2/s^2"}},
-                                                 {"g_over_domega", {1, "1"}},
-                                                 {"dv_over_d_domega", {1, "1"}},
-                                                 {"principal_stress", {3, "Pa"}},
-                                                 {"principal_axes", {9, "1"}},
-                                                 {"principal_gap", {1, "1"}},
-                                                 {"mu_mohr_coulomb", {1, "1"}},
-                                                 {"slip_lines", {6, "1"}},
-                                                 {"coaxiality_angle", {1, "1"}}};
+  const std::map<std::string, Expected> expected{
+      {"velocity_gradient", {9, "1/s"}}, {"angular_velocity_gradient", {9, "1/(m s)"}},
+      {"shear_rate", {1, "1/s"}},        {"pressure", {1, "Pa"}},
+      {"shear_stress", {1, "Pa"}},       {"mu", {1, "1"}},
+      {"inertial_number", {1, "1"}},     {"fluidity", {1, "1/s"}},
+      {"gd_over_dv", {1, "1"}},          {"rotational_temperature", {1, "m^2/s^2"}},
+      {"g_over_domega", {1, "1"}},       {"dv_over_d_domega", {1, "1"}},
+      {"principal_stress", {3, "Pa"}},   {"principal_axes", {9, "1"}},
+      {"principal_gap", {1, "1"}},       {"mu_mohr_coulomb", {1, "1"}},
+      {"slip_lines", {6, "1"}},          {"coaxiality_angle", {1, "1"}}};
   FakeInput in = one_voxel();
   const UnitSystem& si = *find_unit_system("si");
   std::set<std::string> found;
@@ -51,8 +44,8 @@ TEST(DerivedStages, DescribeThemselves) {
 }
 
 TEST(DerivedStages, NeedOnlyFieldsThatExist) {
-  const std::set<std::string> base{
-      "phi", "density", "velocity", "mean_diameter", "stress", "temperature", "rotational_fluctuation"};
+  const std::set<std::string> base{"phi",           "density", "velocity",    "angular_velocity",
+                                   "mean_diameter", "stress",  "temperature", "rotational_fluctuation"};
   FakeInput in = one_voxel();
   for (const Stage& stage : in.registry().stages())
     for (const std::string& need : stage.needs(in.settings()).fields)

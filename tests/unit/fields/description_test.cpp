@@ -102,7 +102,23 @@ TEST(FieldDescriptions, PassesAndSweeps) {
   EXPECT_THAT(registry.find("temperature")->needs(one_pass).fields, IsEmpty());
   const StageSettings corrected = settings_with(registry, {{"temperature", "mode", "one_pass_corrected"}});
   EXPECT_THAT(registry.find("temperature")->needs(corrected).fields, ElementsAre("velocity_gradient"));
+  const StageSettings spin = settings_with(registry, {{"rotational_fluctuation", "mode", "one_pass_corrected"}});
+  EXPECT_THAT(registry.find("rotational_fluctuation")->needs(spin).fields, ElementsAre("angular_velocity_gradient"));
   EXPECT_THAT(registry.find("stress")->needs(defaults).fields, ElementsAre("contact_stress", "kinetic_stress"));
+}
+
+// Self-weight is left in where the mean is one over many particles; asking for both is refused.
+TEST(FieldDescriptions, SelfWeightOfAProfileIsNotTakenOff) {
+  for (const char* stage : {"temperature", "rotational_fluctuation"})
+    for (const char* mode : {"two_pass", "two_pass_profile", "one_pass", "one_pass_corrected"})
+      for (const char* weight : {"none", "corrected"}) {
+        const StageSettings s = settings_with(registry, {{stage, "mode", mode}, {stage, "self_weight", weight}});
+        const auto conflict = registry.find(stage)->conflict(s);
+        EXPECT_EQ(conflict.has_value(), mode == std::string("two_pass_profile") && weight == std::string("corrected"));
+        if (conflict) {
+          EXPECT_EQ(conflict->option, "self_weight");
+        }
+      }
 }
 
 // Moments are merged by name: what an option changes must change the name.

@@ -36,6 +36,10 @@ class FakeView : public FrameView {
   const HalfBranches& branches() const override { return b; }
   std::vector<Vec3> interpolate_frame(const Moment& n, const Moment& d) const override { return note("frame", n, d); }
   std::vector<Vec3> interpolate_mean(const Moment& n, const Moment& d) const override { return note("mean", n, d); }
+  std::vector<double> deviation_factors(const Moment& d) const override {
+    asked = "factors: " + d.name;
+    return factors;
+  }
   std::vector<Vec3> interpolate_frame_profile(const Moment& n, const Moment& d,
                                               std::array<bool, 3> axes) const override {
     homogeneous = axes;
@@ -45,6 +49,7 @@ class FakeView : public FrameView {
   Particles p;
   HalfBranches b;
   Vec3 mean{};
+  std::vector<double> factors;
   mutable std::string asked;
   mutable std::array<bool, 3> homogeneous{};
 

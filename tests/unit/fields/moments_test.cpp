@@ -107,6 +107,39 @@ TEST(MomentValues, OnePassVariance) {
   EXPECT_EQ(out[2], 0);
 }
 
+// What the deviations keep of a variance: V Σ (δ - w)² for the mean at the particle, Σ V W - Σ V² W²/Σ V W at the
+// voxel.
+TEST(MomentValues, SharesOfTheVariance) {
+  FakeView view = two_particles();
+  view.factors = {0.5, 0.25};
+  const auto divisor = [](const std::string& stage, const std::string& mode) {
+    return moments_of(registry, stage,
+                      settings_with(registry, {{stage, "mode", mode}, {stage, "self_weight", "corrected"}}))
+        .at(2);
+  };
+  expect_near(values_of(*divisor("temperature", "two_pass"), view), {0.5, 2}, four_pi_over_three);
+  EXPECT_EQ(view.asked, "factors: volume");
+  EXPECT_EQ(divisor("temperature", "two_pass")->name, divisor("rotational_fluctuation", "two_pass")->name);
+
+  const MomentPtr at_voxel = divisor("temperature", "one_pass");
+  ASSERT_EQ(at_voxel->frame_needs.size(), 2U);
+  EXPECT_EQ(at_voxel->frame_needs[1]->kind, Moment::Kind::particle_squares);
+  expect_near(values_of(*at_voxel->frame_needs[1], view), {1, 64}, four_pi_over_three * four_pi_over_three);
+  std::array<std::array<double, leaf_size>, 6> in{};
+  std::array<double, leaf_size> out{};
+  in[4][0] = 2;  // two equal volumes: half of the variance about their mean is theirs
+  in[5][0] = 2;
+  in[4][1] = 3;  // one alone
+  in[5][1] = 9;
+  std::vector<const double*> from;
+  for (const auto& channel : in) from.push_back(channel.data());
+  std::vector<double*> to{out.data()};
+  at_voxel->voxels(from, to);
+  EXPECT_DOUBLE_EQ(out[0], 1);
+  EXPECT_EQ(out[1], 0);
+  EXPECT_EQ(out[2], 0);
+}
+
 // -m u'_i u'_j in the order xx xy xz yy yz zz, u' = v - (1, 1, 1).
 TEST(MomentValues, KineticStress) {
   const FakeView view = two_particles();

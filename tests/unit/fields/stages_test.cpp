@@ -108,6 +108,41 @@ TEST(FieldStages, CorrectedTemperature) {
   EXPECT_FALSE(in.noted(2, Reason::negative_temperature));  // the gradient has given its own reason
 }
 
+// Divided by what is left of the variance, the gradient part taken off before. Below a thousandth nothing is left.
+TEST(FieldStages, WithoutSelfWeight) {
+  FakeInput in(settings_with(
+      registry, {{"temperature", "mode", "one_pass_corrected"}, {"temperature", "self_weight", "corrected"}}));
+  in.set("volume", 0, {1, 1, 0});
+  in.set("volume velocity fluctuation one_pass", 0, {10, 1e-6, 0});
+  in.set("volume velocity freedom one_pass", 0, {0.5, 9e-4, 0});
+  SparseField& l = in.add_field("velocity_gradient", 9);
+  for (int c = 0; c < 9; ++c)
+    for (int v : {0, 1, 2}) l.leaf(0, c)[v] = c == 1 ? 1 : 0;
+  const SparseField t = in.compute(*registry.find("temperature"));
+  EXPECT_EQ(t.leaf(0)[0], (10.0F - 3) / 0.5F);
+  EXPECT_TRUE(std::isnan(t.leaf(0)[1]));
+  EXPECT_TRUE(in.noted(1, Reason::lone_particles));
+  EXPECT_FALSE(in.noted(1, Reason::no_material));
+  EXPECT_TRUE(std::isnan(t.leaf(0)[2]));
+  EXPECT_TRUE(in.noted(2, Reason::no_material));
+  EXPECT_FALSE(in.noted(2, Reason::lone_particles));
+}
+
+// The spin's own gradient is taken off its variance.
+TEST(FieldStages, CorrectedSpinFluctuation) {
+  FakeInput in(settings_with(registry, {{"rotational_fluctuation", "mode", "one_pass_corrected"}}));
+  in.set("volume", 0, {1, 1, 1});
+  in.set("volume angular velocity fluctuation one_pass", 0, {10, 1, 5});
+  SparseField& l = in.add_field("angular_velocity_gradient", 9);
+  for (int c = 0; c < 9; ++c)
+    for (int v : {0, 1, 2}) l.leaf(0, c)[v] = c == 5 && v < 2 ? 1 : 0;
+  const SparseField w = in.compute(*registry.find("rotational_fluctuation"));
+  EXPECT_EQ(w.leaf(0)[0], 7.0F);
+  EXPECT_TRUE(std::isnan(w.leaf(0)[1]));
+  EXPECT_TRUE(in.noted(1, Reason::negative_temperature));
+  EXPECT_EQ(w.leaf(0)[2], 5.0F);
+}
+
 TEST(FieldStages, KineticStressIsSymmetric) {
   FakeInput in(registry.default_settings());
   const MomentPtr m = moments_of(registry, "kinetic_stress", registry.default_settings()).at(0);

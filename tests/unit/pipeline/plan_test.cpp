@@ -171,6 +171,19 @@ TEST(Plan, CyclesAreNamed) {
   EXPECT_THAT(refusal(wanting(self, {"a"}), self), HasSubstr("a -> a"));
 }
 
+TEST(Plan, OptionsThatDoNotGoTogetherAreRefusedWhereTheStageIsWanted) {
+  const StageRegistry& registry = StageRegistry::standard();
+  Pipeline p = wanting(registry, {"temperature"});
+  p.stages.at("temperature").at("mode") = std::string("two_pass_profile");
+  p.stages.at("temperature").at("self_weight") = std::string("corrected");
+  p.where["stages.temperature.self_weight"] = {"p.yaml", 12};
+  const std::string text = refusal(p, registry);
+  EXPECT_THAT(text, HasSubstr("p.yaml:12"));
+  EXPECT_THAT(text, HasSubstr("self_weight 'corrected' with mode 'two_pass_profile'"));
+  p.fields = {"phi"};
+  EXPECT_NO_THROW(make_plan(p, registry));
+}
+
 TEST(Plan, InterpolationNeedsAWideKernel) {
   const StageRegistry registry = test::example_registry();
   Pipeline p = wanting(registry, {"phi", "temperature"});

@@ -63,6 +63,26 @@ TEST_P(ParticleSplat, SumsEqualTheBruteForce) {
   expect_zero_where_inactive(sums);
 }
 
+TEST_P(ParticleSplat, SquaresEqualTheBruteForce) {
+  const auto q = random_values(count, 17);
+  const LeafBuffers sums = splat_particle_squares(lattice, kernel, buckets, topology, q, 1);
+  const double c = scene.cutoff;
+  const double shift = position_error(x) * 2 * lucy_peak(c) * largest_gradient(c);  // d(W²) ≤ 2 W(0) |∇W| dr
+  for (const Coord& voxel : scene.voxels(c + 2 * scene.voxel)) {
+    double sum = 0, terms = 0, reached = 0;
+    for (std::size_t p = 0; p < count; ++p) {
+      const double r = norm(scene.shortest(lattice.centre(voxel), row(x, p)));
+      if (r >= c) continue;
+      const double term = q[p] * lucy(r, c) * lucy(r, c);
+      sum += term;
+      terms += std::abs(term);
+      reached += std::abs(q[p]);
+    }
+    EXPECT_NEAR(value_at(sums, voxel, 0), sum, 1e-13 * terms + reached * shift);
+  }
+  expect_zero_where_inactive(sums);
+}
+
 TEST_P(ParticleSplat, GradientsEqualTheBruteForce) {
   const int values = 2;
   const auto q = random_values(count * values, 13);
