@@ -14,48 +14,53 @@ std::size_t MomentSums::CoordHash::operator()(const Coord& c) const noexcept {
 }
 
 MomentSums::MomentSums(const std::vector<MomentPtr>& moments) {
-  int channels = 0;
-  for (const MomentPtr& m : moments)
-    if (first_channel_.emplace(m->name, channels).second) {
-      count_[m->name] = m->channels;
-      channels += m->channels;
-    }
-  channels_ = static_cast<std::size_t>(channels);
+  for (const MomentPtr& m : moments) {
+    const auto count = static_cast<std::size_t>(m->channels);
+    if (places_.emplace(m->name, Place{places_.size(), channels_, count}).second) channels_ += count;
+  }
 }
 
 MomentSums::MomentSums(MomentSums&&) noexcept = default;
+MomentSums& MomentSums::operator=(MomentSums&&) noexcept = default;
 MomentSums::~MomentSums() = default;
 
 MomentSums::Leaf& MomentSums::leaf(const Coord& origin) {
   auto& slot = leaves_[origin];
   if (!slot) {
     slot = std::make_unique<Leaf>();
+    slot->reached_by.resize(places_.size());
     slot->sums.resize(channels_ * leaf_size);
     all_.push_back(slot.get());
   }
   return *slot;
 }
 
+const MomentSums::Leaf* MomentSums::find(const Coord& origin) const {
+  const auto it = leaves_.find(origin);
+  return it == leaves_.end() ? nullptr : it->second.get();
+}
+
 std::size_t MomentSums::bytes(std::size_t leaves) const {
-  return leaves * (sizeof(Leaf) + channels_ * leaf_size * sizeof(double));
+  return leaves * (sizeof(Leaf) + places_.size() * sizeof(LeafMask) + channels_ * leaf_size * sizeof(double));
 }
 
 bool MomentSums::wants(const Moment& moment) const {
-  return first_channel_.contains(moment.name) && !complete_.contains(moment.name);
+  return places_.contains(moment.name) && !complete_.contains(moment.name);
 }
 
 MomentSums::Target MomentSums::target(const std::vector<MomentPtr>& moments, const Topology& topology) {
   Target target;
   if (moments.empty()) return target;
   for (const MomentPtr& m : moments) {
+    target.moments_.push_back(places_.at(m->name));
     added_.insert(m->name);
-    target.moments_.push_back(
-        {static_cast<std::size_t>(first_channel_.at(m->name)), static_cast<std::size_t>(m->channels)});
   }
   target.leaves_.resize(topology.leaf_count());
   for (std::size_t l = 0; l < target.leaves_.size(); ++l) {
-    target.leaves_[l] = &leaf(topology.origin(l));
-    target.leaves_[l]->reached |= topology.mask(l);
+    Leaf& to = leaf(topology.origin(l));
+    to.reached |= topology.mask(l);
+    for (const Place& m : target.moments_) to.reached_by[m.number] |= topology.mask(l);
+    target.leaves_[l] = &to;
   }
   return target;
 }
@@ -72,12 +77,38 @@ void MomentSums::add(const MomentPtr& moment, const LeafBuffers& part, int chann
 }
 
 void MomentSums::end_frame() {
-  const double sample = complete_.empty() ? 1 : 0;
+  const bool counts = complete_.empty();
+  if (counts) ++frames_;
   parallel_for(all_.size(), [&](std::size_t l) {
     Leaf& leaf = *all_[l];
-    leaf.reached.for_each([&](int v) { leaf.frames[static_cast<std::size_t>(v)] += sample; });
+    if (counts) leaf.reached.for_each([&](int v) { leaf.frames[static_cast<std::size_t>(v)] += 1; });
     leaf.mask |= leaf.reached;
     leaf.reached = {};
+  });
+}
+
+void MomentSums::add(const MomentSums& frames) {
+  std::vector<std::pair<Place, Place>> moments;  // here and there
+  for (const std::string& name : frames.added_)
+    if (const auto it = places_.find(name); it != places_.end()) {
+      moments.emplace_back(it->second, frames.places_.at(name));
+      added_.insert(name);
+    }
+  const bool counts = complete_.empty();
+  if (counts) frames_ += frames.frames_;
+  std::vector<std::pair<Leaf*, const Leaf*>> leaves;
+  for (const auto& [origin, from] : frames.leaves_) leaves.emplace_back(&leaf(origin), from.get());
+  parallel_for(leaves.size(), [&](std::size_t l) {
+    const auto& [to, from] = leaves[l];
+    to->mask |= from->mask;
+    if (counts)
+      for (std::size_t v = 0; v < leaf_size; ++v) to->frames[v] += from->frames[v];
+    for (const auto& [here, there] : moments) {
+      to->reached_by[here.number] |= from->reached_by[there.number];
+      double* sum = to->sums.data() + here.first * leaf_size;
+      const double* values = from->sums.data() + there.first * leaf_size;
+      for (std::size_t i = 0; i < here.count * leaf_size; ++i) sum[i] += values[i];
+    }
   });
 }
 
@@ -85,12 +116,27 @@ void MomentSums::end_sweep(std::size_t frames) {
   const auto n = static_cast<double>(frames);
   parallel_for(all_.size(), [&](std::size_t l) {
     for (const std::string& name : added_) {
-      double* sum = all_[l]->sums.data() + static_cast<std::size_t>(first_channel_.at(name)) * leaf_size;
-      for (std::size_t i = 0; i < static_cast<std::size_t>(count_.at(name)) * leaf_size; ++i) sum[i] /= n;
+      const Place& place = places_.at(name);
+      double* sum = all_[l]->sums.data() + place.first * leaf_size;
+      for (std::size_t i = 0; i < place.count * leaf_size; ++i) sum[i] /= n;
     }
   });
+  end_sweep();
+}
+
+void MomentSums::end_sweep() {
   complete_.merge(added_);
   added_.clear();
+}
+
+const double* MomentSums::sum(const Coord& origin, const Moment& moment) const {
+  const Leaf* leaf = find(origin);
+  return leaf == nullptr ? nullptr : leaf->sums.data() + places_.at(moment.name).first * leaf_size;
+}
+
+LeafMask MomentSums::reached_by(const Coord& origin, const Moment& moment) const {
+  const Leaf* leaf = find(origin);
+  return leaf == nullptr ? LeafMask{} : leaf->reached_by[places_.at(moment.name).number];
 }
 
 MomentMeans MomentSums::means() const {
@@ -110,7 +156,7 @@ MomentMeans MomentSums::means() const {
     frame_counts.push_back(leaf.frames.data());
   }
   std::map<std::string, int> first_channel;
-  for (const std::string& name : complete_) first_channel[name] = first_channel_.at(name);
+  for (const std::string& name : complete_) first_channel[name] = static_cast<int>(places_.at(name).first);
   return {std::move(values), std::move(frame_counts), std::move(first_channel)};
 }
 

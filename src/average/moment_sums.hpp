@@ -41,10 +41,16 @@ class MomentMeans {
 /// Adds up frames one after another: every voxel's terms are added in the order of the frames, whatever the threads do.
 class MomentSums {
   struct Leaf;
+  struct Place {
+    std::size_t number = 0;  // among the moments
+    std::size_t first = 0;   // channel
+    std::size_t count = 0;   // of channels
+  };
 
  public:
   explicit MomentSums(const std::vector<MomentPtr>& moments);
   MomentSums(MomentSums&&) noexcept;
+  MomentSums& operator=(MomentSums&&) noexcept;
   ~MomentSums();
 
   /// Whether a moment is to be summed in the current sweep: it is among those asked for, and no earlier sweep summed
@@ -60,10 +66,7 @@ class MomentSums {
 
    private:
     friend class MomentSums;
-    struct Channels {
-      std::size_t first, count;
-    };
-    std::vector<Channels> moments_;
+    std::vector<Place> moments_;
     std::vector<Leaf*> leaves_;
   };
   /// All moments must be wanted (std::out_of_range for one that is not known). Their voxels are those that the frame
@@ -74,11 +77,23 @@ class MomentSums {
 
   /// Ends a frame. In the first sweep every voxel that its moments reached gains one sample.
   void end_frame();
+  /// Adds frames of the same sweep that were summed elsewhere: the sums of the moments that both know, the voxels and,
+  /// in the first sweep, the samples.
+  void add(const MomentSums& frames);
   /// Ends a sweep over `frames` frames: what it summed is complete, and becomes a mean.
   void end_sweep(std::size_t frames);
+  /// Ends a sweep, but leaves the sums what they are.
+  void end_sweep();
 
   /// The means of the moments that are complete. A further sweep leaves them alone.
   MomentMeans means() const;
+
+  /// The frames of the first sweep.
+  std::size_t frames() const { return frames_; }
+  /// The sum of a moment in a leaf, [channel][offset]; nullptr where no frame reached the leaf.
+  const double* sum(const Coord& origin, const Moment& moment) const;
+  /// The voxels of a leaf that a moment reached in any frame.
+  LeafMask reached_by(const Coord& origin, const Moment& moment) const;
 
   /// Bytes that `leaves` leaves of sums take.
   std::size_t bytes(std::size_t leaves) const;
@@ -87,7 +102,8 @@ class MomentSums {
  private:
   struct Leaf {
     LeafMask mask;
-    LeafMask reached;  // by the current frame
+    LeafMask reached;                  // by the current frame
+    std::vector<LeafMask> reached_by;  // each moment
     std::vector<double> sums;
     std::array<double, leaf_size> frames{};
   };
@@ -95,12 +111,13 @@ class MomentSums {
     std::size_t operator()(const Coord& c) const noexcept;
   };
   Leaf& leaf(const Coord& origin);
+  const Leaf* find(const Coord& origin) const;
 
-  std::map<std::string, int> first_channel_;
+  std::map<std::string, Place> places_;
   std::size_t channels_ = 0;
-  std::map<std::string, int> count_;  // channels of each moment
-  std::set<std::string> added_;       // in the current sweep
-  std::set<std::string> complete_;    // in earlier sweeps
+  std::set<std::string> added_;     // in the current sweep
+  std::set<std::string> complete_;  // in earlier sweeps
+  std::size_t frames_ = 0;
   std::unordered_map<Coord, std::unique_ptr<Leaf>, CoordHash> leaves_;
   std::vector<Leaf*> all_;  // in the order they came
 };
