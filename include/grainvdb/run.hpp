@@ -31,6 +31,7 @@ struct RunReport {
   double wall_seconds = 0;
   std::vector<std::pair<std::string, double>> seconds;      ///< by step of the run: read, splat, …; steps overlap
   std::vector<std::pair<std::string, std::size_t>> masked;  ///< reason → voxels, of the last output time
+  std::vector<std::string> averaging;                       ///< what there is to say of the averages, in words
   std::vector<std::string> files;                           ///< written
   ReadCounters read;
 };

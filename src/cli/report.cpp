@@ -44,6 +44,7 @@ std::string describe(const RunReport& report) {
   text << std::fixed << std::setprecision(2);
   text << counted(report.frames, "frame") << ", " << counted(report.active_voxels, "active voxel") << ", "
        << counted(report.channels, "channel") << " splatted per frame\n";
+  for (const std::string& line : report.averaging) text << "average: " << line << '\n';
   text << "time: " << report.wall_seconds << " s; by step, which overlap:";
   const char* between = " ";
   for (const auto& [step, seconds] : report.seconds) {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include <tbb/task_arena.h>
 
@@ -32,7 +34,7 @@ std::size_t channel_count(const Plan& plan) {
   return n;
 }
 
-OutputTime time_of(const FrameSource& source, const std::vector<std::size_t>& frames) {
+OutputTime time_of(const FrameSource& source, std::span<const std::size_t> frames) {
   OutputTime t;
   t.first_step = source.frames()[frames.front()].step;
   t.last_step = source.frames()[frames.back()].step;
@@ -54,7 +56,10 @@ class Stream {
         source_(source),
         take_(take),
         progress_(progress),
-        averager_(pipeline, plan, check_against_input(pipeline, plan, source)) {}
+        lattice_(check_against_input(pipeline, plan, source)),
+        wanted_(select_frames(pipeline.frames, source.frames().size())),
+        schedule_(schedule_windows(time_windows(pipeline), wanted_.size())),
+        averager_(pipeline, plan, schedule_, lattice_) {}
 
   RunReport run();
 
@@ -63,24 +68,26 @@ class Stream {
   FramePtr prepare(const Visit& visit, Frame frame);
   void finish(const Visit& visit, FrameContext& frame);
   void show_progress(const Visit& visit);
-  void end_window(bool is_last);
+  std::span<const std::size_t> frames_in(std::size_t window) const;
+  void end_window(std::size_t window);
 
   const Pipeline& pipeline_;
   const Plan& plan_;
   FrameSource& source_;
   const std::function<void(OutputFields)>& take_;
   const std::function<void(const Progress&)>& progress_;
+  Lattice lattice_;
+  std::vector<std::size_t> wanted_;
+  WindowSchedule schedule_;
   WindowAverager averager_;
   Stopwatch clock_;
   Progress now_;
   RunReport report_;
-  std::vector<std::size_t> in_window_;  // frames of this window
-  std::size_t material_ = 0;            // particles that select kept, over frames and sweeps
+  std::size_t material_ = 0;  // particles that select kept, over frames and sweeps
 };
 
 RunReport Stream::run() {
-  const std::vector<std::size_t> wanted = select_frames(pipeline_.frames, source_.frames().size());
-  const std::vector<Visit> visits = schedule_visits(pipeline_, wanted, plan_.sweeps.size());
+  const std::vector<Visit> visits = schedule_visits(schedule_, wanted_, plan_.sweeps.size());
   now_.frames_total = visits.size();
 
   // What runs in parallel within a step is isolated: a thread that waits for the rest of it does not begin another
@@ -96,11 +103,12 @@ RunReport Stream::run() {
         tbb::this_task_arena::isolate([&] { finish(visits[i], *frame); });
         frame.reset();
         show_progress(visits[i]);
-        if (visits[i].ends_window) end_window(i + 1 == visits.size());
+        if (visits[i].ends_window) end_window(visits[i].window);
       });
 
-  report_.frames = wanted.size();
+  report_.frames = schedule_.frame_count();
   report_.channels = channel_count(plan_);
+  report_.averaging.push_back(describe(schedule_, pipeline_));
   report_.seconds = clock_.seconds();
   report_.wall_seconds = clock_.passed();
   report_.read = source_.counters();
@@ -119,10 +127,9 @@ FramePtr Stream::prepare(const Visit& visit, Frame frame) {
 }
 
 void Stream::finish(const Visit& visit, FrameContext& frame) {
-  clock_.time("splat", [&] { averager_.add(frame); });
+  clock_.time("splat", [&] { averager_.add(frame, visit); });
   material_ += frame.particles().size();
-  if (visit.sweep == 0) in_window_.push_back(visit.frame);
-  if (visit.ends_sweep) clock_.time("average", [&] { averager_.end_sweep(in_window_.size()); });
+  if (visit.ends_sweep) clock_.time("average", [&] { averager_.end_sweep(visit); });
 }
 
 void Stream::show_progress(const Visit& visit) {
@@ -133,10 +140,16 @@ void Stream::show_progress(const Visit& visit) {
   if (progress_) progress_(now_);
 }
 
-void Stream::end_window(bool is_last) {
+std::span<const std::size_t> Stream::frames_in(std::size_t window) const {
+  const FrameSpan& frames = schedule_.windows[window].frames;
+  return std::span(wanted_).subspan(frames.first, frames.count);
+}
+
+void Stream::end_window(std::size_t window) {
   // Contacts alone leave every other field undefined.
-  if (is_last && material_ == 0)
-    throw InputError({{source_.frames()[in_window_.front()].file, 0},
+  const std::span<const std::size_t> frames = frames_in(window);
+  if (window + 1 == schedule_.windows.size() && material_ == 0)
+    throw InputError({{source_.frames()[frames.front()].file, 0},
                       "no material in any of the frames",
                       {},
                       "at least one particle that select keeps",
@@ -151,9 +164,7 @@ void Stream::end_window(bool is_last) {
   report_.masked.clear();
   for (const ReasonInfo& r : reasons())
     if (const std::size_t n = derived.mask.count(r.reason); n > 0) report_.masked.emplace_back(r.name, n);
-  const OutputTime time = time_of(source_, in_window_);
-  in_window_.clear();
-  take_({time, std::move(derived.fields), std::move(derived.mask)});
+  take_({time_of(source_, frames), std::move(derived.fields), std::move(derived.mask)});
 }
 
 }  // namespace

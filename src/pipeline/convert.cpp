@@ -105,8 +105,9 @@ std::string frame_range(const KeyInfo& key, const ConfigNode& node) {
 }
 
 ConfigValue window(const KeyInfo& key, const ConfigNode& node) {
-  if (scalar(key, node) == "all") return std::string("all");
-  if (!parse_integer(node.text)) refuse(key, node, "is not a number of frames", did_you_mean(node.text, {"all"}));
+  const std::string& text = scalar(key, node);
+  if (text == "all" || text == "none") return text;
+  if (!parse_integer(text)) refuse(key, node, "is not a number of frames", did_you_mean(text, {"all", "none"}));
   return integer(key, node);
 }
 

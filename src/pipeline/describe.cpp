@@ -5,6 +5,7 @@
 
 #include "grainvdb/plan.hpp"
 #include "grainvdb/units.hpp"
+#include "pipeline/schedule.hpp"
 
 namespace grainvdb {
 namespace {
@@ -91,12 +92,19 @@ std::string frame_text(const Pipeline& pipeline) {
          std::to_string(r.step);
 }
 
+std::string window_text(const Pipeline& pipeline) {
+  if (pipeline.window == 0) return "averaged over all of them";
+  std::string text =
+      pipeline.window == 1 ? "each by itself" : "averaged over windows of " + counted(pipeline.window, "frame");
+  if (pipeline.window_step > 0) text += ", one every " + counted(pipeline.window_step, "frame");
+  return text;
+}
+
 }  // namespace
 
 std::string describe(const Plan& plan, const Pipeline& pipeline) {
   std::string text = "pipeline " + pipeline.file + '\n';
-  text += "frames: " + frame_text(pipeline) + "; averaged over " +
-          (pipeline.window == 0 ? "all of them" : "windows of " + counted(pipeline.window, "frame")) + "\n\n";
+  text += "frames: " + frame_text(pipeline) + "; " + window_text(pipeline) + "\n\n";
   for (std::size_t s = 0; s < plan.sweeps.size(); ++s) {
     text += "sweep " + std::to_string(s + 1) + " of " + std::to_string(plan.sweeps.size()) + '\n';
     text += describe_sweep(plan.sweeps[s]);
@@ -112,10 +120,12 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
 
   int channels = 0;
   for (const MomentPtr& moment : plan.means) channels += moment->channels;
-  const int bytes = 8 * channels + 4 * components;
+  const std::size_t sums = 1 + shared_parts(time_windows(pipeline));  // of the window, and of what windows share
+  const std::size_t bytes = 8 * static_cast<std::size_t>(channels) * sums + 4 * static_cast<std::size_t>(components);
   text += "\ntime means kept: " + joined(names_of(plan.means), "none") + '\n';
   text += "memory per active voxel: at most " + std::to_string(bytes) + " bytes (" + std::to_string(channels) +
-          " mean channels of 8, " + std::to_string(components) + " field components of 4)\n";
+          " mean channels of 8" + (sums > 1 ? " in " + std::to_string(sums) + " sums" : "") + ", " +
+          std::to_string(components) + " field components of 4)\n";
   text += "written: " + joined(pipeline.fields, "nothing") + " as " + joined(pipeline.formats, "nothing") + '\n';
   text += "not read: " + joined(columns_not_read(plan), "nothing is left out") + '\n';
   text += "not needed: " + joined(plan.not_needed, "no stage is left out") + '\n';

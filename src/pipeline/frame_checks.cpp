@@ -93,7 +93,7 @@ void check_memory(std::size_t leaves, const SplatMemory& memory, const Material&
        "step " + std::to_string(material.step) + " needs more memory than is allowed",
        "at least " + std::to_string(need / 1e9) + " GB for " + std::to_string(leaves) + " leaves of 512 voxels",
        "at most " + std::to_string(limit / 1e9) + " GB",
-       "Use larger voxels or fewer fields, or raise limits.memory_gb"});
+       "Use larger voxels, fewer fields or shorter sliding windows, or raise limits.memory_gb"});
 }
 
 }  // namespace grainvdb

@@ -35,12 +35,12 @@ void FrameContext::prepare(std::size_t bytes_per_leaf) {
   }
 }
 
-void FrameContext::run(MomentSums& sums, const MomentMeans* means) {
+void FrameContext::run(WindowSums& sums, std::size_t bytes_per_leaf, const MomentMeans* means) {
   means_ = means;
   for (const SweepGroups::Pass& pass : groups_.passes) {
     for (const SplatGroup& group : pass.groups) {
       auto ready = started_.extract(&group);
-      splat(group, ready ? std::move(ready.mapped()) : start(group, sums.bytes(1)), sums);
+      splat(group, ready ? std::move(ready.mapped()) : start(group, bytes_per_leaf), bytes_per_leaf, sums);
     }
     for (const MomentPtr& m : pass.voxelwise) combine_voxels(m, sums);
   }
@@ -93,9 +93,10 @@ std::vector<double> FrameContext::values_of(const SplatGroup& group) const {
   return all;
 }
 
-void FrameContext::splat(const SplatGroup& group, const Started& started, MomentSums& sums) {
+void FrameContext::splat(const SplatGroup& group, const Started& started, std::size_t bytes_per_leaf,
+                         WindowSums& sums) {
   const std::shared_ptr<const Topology>& topology = started.contacts ? started.contacts->topology() : topology_;
-  check(topology->leaf_count(), group, sums.bytes(1), sums.leaf_count());
+  check(topology->leaf_count(), group, bytes_per_leaf, sums.leaf_count());
   if (started.contacts) {
     started.contacts->sums(consumer(group, topology, sums));
   } else if (group.buffered()) {
@@ -117,7 +118,7 @@ LeafBuffers FrameContext::splat_in_double(const SplatGroup& group, const Started
 }
 
 LeafConsumer FrameContext::consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology,
-                                    MomentSums& sums) {
+                                    WindowSums& sums) {
   struct Part {
     std::size_t from, channels;  // of the splat
     int to = 0;                  // channel of the buffer
@@ -150,7 +151,7 @@ LeafConsumer FrameContext::consumer(const SplatGroup& group, const std::shared_p
   };
 }
 
-void FrameContext::keep(LeafBuffers buffers, const std::vector<MomentPtr>& moments, MomentSums& sums) {
+void FrameContext::keep(LeafBuffers buffers, const std::vector<MomentPtr>& moments, WindowSums& sums) {
   buffers_.push_back(std::make_unique<LeafBuffers>(std::move(buffers)));
   int channel = 0;
   for (const MomentPtr& m : moments) {
@@ -165,7 +166,7 @@ void FrameContext::keep(LeafBuffers buffers, const std::vector<MomentPtr>& momen
   }
 }
 
-void FrameContext::combine_voxels(const MomentPtr& moment, MomentSums& sums) {
+void FrameContext::combine_voxels(const MomentPtr& moment, WindowSums& sums) {
   std::vector<Place> channels;
   for (const MomentPtr& need : moment->frame_needs)
     for (int c = 0; c < need->channels; ++c)

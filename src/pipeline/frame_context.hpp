@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "average/moment_sums.hpp"
+#include "average/window_sums.hpp"
 #include "bin/buckets.hpp"
 #include "grainvdb/kernel.hpp"
 #include "grainvdb/lattice.hpp"
@@ -42,7 +42,7 @@ class FrameContext : public FrameView {
 
   /// Splats all passes, each group of moments in one splat, and adds what `sums` wants. `means` are those of the sweep
   /// before, or nullptr. Throws LimitError as prepare does.
-  void run(MomentSums& sums, const MomentMeans* means);
+  void run(WindowSums& sums, std::size_t bytes_per_leaf, const MomentMeans* means);
 
   const Particles& particles() const override { return material_->particles; }
   const HalfBranches& branches() const override { return material_->branches; }
@@ -67,12 +67,12 @@ class FrameContext : public FrameView {
   Started start(const SplatGroup& group, std::size_t bytes_per_leaf);
   void bucket_particles();
   std::vector<double> values_of(const SplatGroup& group) const;
-  void splat(const SplatGroup& group, const Started& started, MomentSums& sums);
+  void splat(const SplatGroup& group, const Started& started, std::size_t bytes_per_leaf, WindowSums& sums);
   LeafBuffers splat_in_double(const SplatGroup& group, const Started& started) const;
   /// What takes the sums of a group's leaves: the sums of the window, and a buffer for the moments that are kept.
-  LeafConsumer consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology, MomentSums& sums);
-  void keep(LeafBuffers buffers, const std::vector<MomentPtr>& moments, MomentSums& sums);
-  void combine_voxels(const MomentPtr& moment, MomentSums& sums);
+  LeafConsumer consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology, WindowSums& sums);
+  void keep(LeafBuffers buffers, const std::vector<MomentPtr>& moments, WindowSums& sums);
+  void combine_voxels(const MomentPtr& moment, WindowSums& sums);
   void check(std::size_t leaves, const SplatGroup& group, std::size_t bytes_per_leaf, std::size_t summed_leaves) const;
 
   std::shared_ptr<const Material> material_;

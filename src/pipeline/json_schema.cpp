@@ -53,7 +53,7 @@ Json value_schema(const KeyInfo& key) {
     case ValueType::window:
       break;
   }
-  return {{"anyOf", {{{"const", "all"}}, number_schema(key, "integer")}}};
+  return {{"anyOf", {{{"enum", {"all", "none"}}}, number_schema(key, "integer")}}};
 }
 
 Json section_schema(const Schema& schema, const std::string& path, const std::string& help) {

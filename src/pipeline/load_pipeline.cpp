@@ -147,6 +147,11 @@ void check_together(const Pipeline& p) {
                        {},
                        "either force (the total), or both normal_force and tangential_force",
                        {}});
+  if (p.window_step > 0 && p.window == 0)
+    throw ConfigError({p.location("average.step"), "average.step has no meaning for one mean of all frames",
+                       "average.step " + std::to_string(p.window_step) + " at average.window all",
+                       "average.window: none, or a number of frames",
+                       "frames: ::" + std::to_string(p.window_step) + " averages every so many frames"});
   if (const auto& ids = p.select.ids; ids && ids->first > ids->second)
     throw ConfigError({p.location("select.ids"),
                        "select.ids selects nothing",

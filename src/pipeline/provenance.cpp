@@ -19,11 +19,11 @@ std::string lines(const Range& range, F&& line) {
 }  // namespace
 
 Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const FrameSource& source,
-                         std::span<const std::size_t> wanted) {
+                         std::span<const std::size_t> frames, const RunReport& report) {
   const auto plain = [](const auto& s) { return s; };
   std::vector<std::size_t> skipped;
   for (std::size_t k = 0; k < source.frames().size(); ++k)
-    if (!std::binary_search(wanted.begin(), wanted.end(), k)) skipped.push_back(k);
+    if (!std::binary_search(frames.begin(), frames.end(), k)) skipped.push_back(k);
   const auto step = [&](std::size_t k) { return std::to_string(source.frames()[k].step); };
   std::set<std::string> columns;
   for (const Sweep& sweep : plan.sweeps)
@@ -32,8 +32,9 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
           {"pipeline", pipeline.resolved},
           {"inputs", lines(source.files(), [](const auto& f) { return f.first + " " + std::to_string(f.second); })},
           {"units", source.units().name},
-          {"steps", lines(wanted, step)},
+          {"steps", lines(frames, step)},
           {"skipped_frames", lines(skipped, step)},
+          {"averaging", lines(report.averaging, plain)},
           {"columns_read", lines(columns, plain)},
           {"computed", lines(plan.stages, [](const Stage* s) { return s->name + ": " + s->equation; })},
           {"not_needed", lines(plan.not_needed, plain)}};

@@ -6,11 +6,12 @@
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/pipeline.hpp"
 #include "grainvdb/plan.hpp"
+#include "grainvdb/run.hpp"
 
 namespace grainvdb {
 
-/// `wanted` are the frames that the pipeline selects.
+/// `frames` are those that were averaged.
 Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const FrameSource& source,
-                         std::span<const std::size_t> wanted);
+                         std::span<const std::size_t> frames, const RunReport& report);
 
 }  // namespace grainvdb

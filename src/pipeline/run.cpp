@@ -42,7 +42,7 @@ class Writer {
   const Sinks& sinks_;
   Lattice lattice_;
   std::vector<std::size_t> wanted_;
-  std::size_t times_;
+  WindowSchedule schedule_;
   std::optional<Topology::Bounds> series_box_;
   bool begun_ = false;
   Stopwatch clock_;
@@ -57,8 +57,8 @@ Writer::Writer(const Pipeline& pipeline, const Plan& plan, FrameSource& source, 
       sinks_(sinks),
       lattice_(check_against_input(pipeline, plan, source)),
       wanted_(select_frames(pipeline.frames, source.frames().size())),
-      times_(window_count(pipeline, wanted_.size())) {
-  if (times_ == 1) return;
+      schedule_(schedule_windows(time_windows(pipeline), wanted_.size())) {
+  if (schedule_.windows.size() == 1) return;
   series_box_ = reach_of_boxes(lattice_, source, wanted_, pipeline.cutoff);
   check_dense_size(*series_box_, pipeline);
 }
@@ -92,7 +92,7 @@ OutputLayout Writer::layout(const Topology::Bounds& bounds, const std::vector<co
   OutputLayout layout(lattice_);
   layout.first = bounds.first;
   layout.last = bounds.last;
-  layout.time_count = times_;
+  layout.time_count = schedule_.windows.size();
   for (const SparseField* f : fields) layout.fields.push_back(f->meta());
   layout.has_mask = writes_mask();
   layout.length_unit = source_.units().length;
@@ -111,7 +111,7 @@ void Writer::commit(RunReport& report) {
   const std::lock_guard lock(turn_);
   clock_.time("write", [&] {
     for (const auto& sink : sinks_) {
-      sink->commit(provenance_of(pipeline_, plan_, source_, wanted_));
+      sink->commit(provenance_of(pipeline_, plan_, source_, frames_of(schedule_, wanted_), report));
       for (const std::string& file : sink->files()) report.files.push_back(file);
     }
   });

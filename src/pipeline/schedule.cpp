@@ -5,30 +5,80 @@
 namespace grainvdb {
 namespace {
 
-std::size_t frames_per_window(const Pipeline& pipeline, std::size_t frames) {
-  return pipeline.window == 0 ? frames : std::min(pipeline.window, frames);
-}
+/// The visits of one sweep over one window.
+class SweepVisits {
+ public:
+  SweepVisits(const WindowSchedule& schedule, std::span<const std::size_t> wanted, std::vector<Visit>& visits)
+      : schedule_(schedule), wanted_(wanted), visits_(visits) {}
+
+  void add(std::size_t window, std::size_t sweep) {
+    std::size_t part = schedule_.windows[window].first_part;
+    std::size_t block = 0;
+    for (const std::size_t parts : schedule_.windows[window].blocks) {
+      for (std::size_t k = 0; k < parts; ++k, ++part)
+        if (sweep > 0 || part >= next_part_) add_part({.sweep = sweep, .window = window, .block = block}, part);
+      ++block;
+    }
+    next_part_ = std::max(next_part_, part);
+    visits_.back().ends_sweep = true;
+  }
+
+ private:
+  void add_part(Visit visit, std::size_t part) {
+    const FrameSpan& frames = schedule_.parts[part];
+    visit.begins_part = true;
+    for (std::size_t f = frames.first; f < frames.end(); ++f) {
+      visit.frame = wanted_[f];
+      visits_.push_back(visit);
+      visit.begins_part = false;
+    }
+  }
+
+  const WindowSchedule& schedule_;
+  std::span<const std::size_t> wanted_;
+  std::vector<Visit>& visits_;
+  std::size_t next_part_ = 0;  // that no window before has
+};
 
 }  // namespace
 
-std::size_t window_count(const Pipeline& pipeline, std::size_t frames) {
-  const std::size_t per_window = frames_per_window(pipeline, frames);
-  return (frames + per_window - 1) / per_window;
+TimeWindows time_windows(const Pipeline& pipeline) {
+  return {pipeline.window, pipeline.window_step, 1};
 }
 
-std::vector<Visit> schedule_visits(const Pipeline& pipeline, std::span<const std::size_t> wanted, std::size_t sweeps) {
-  const std::size_t per_window = frames_per_window(pipeline, wanted.size());
+std::vector<Visit> schedule_visits(const WindowSchedule& schedule, std::span<const std::size_t> wanted,
+                                   std::size_t sweeps) {
   std::vector<Visit> visits;
-  visits.reserve(wanted.size() * sweeps);
-  for (std::size_t first = 0; first < wanted.size(); first += per_window) {
-    const auto window = wanted.subspan(first, std::min(per_window, wanted.size() - first));
-    for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {
-      for (const std::size_t frame : window) visits.push_back({frame, sweep});
-      visits.back().ends_sweep = true;
-    }
+  SweepVisits add(schedule, wanted, visits);
+  for (std::size_t w = 0; w < schedule.windows.size(); ++w) {
+    for (std::size_t sweep = 0; sweep < sweeps; ++sweep) add.add(w, sweep);
     visits.back().ends_window = true;
   }
   return visits;
+}
+
+std::string describe(const WindowSchedule& schedule, const Pipeline& pipeline) {
+  const auto counted = [](std::size_t n, const char* noun) {
+    return std::to_string(n) + ' ' + noun + (n == 1 ? "" : "s");
+  };
+  const FrameSpan& first = schedule.windows.front().frames;
+  const FrameSpan& last = schedule.windows.back().frames;
+  const std::size_t times = schedule.windows.size();
+  std::string text = counted(times, "output time") + " of " + counted(first.count, "frame");
+  if (times > 1 && schedule.windows[1].frames.first != first.count)
+    text += ", one every " + counted(schedule.windows[1].frames.first, "frame");
+  if (last.count < pipeline.window)
+    text += std::string(times > 1 ? "; the last has only " + std::to_string(last.count) : "") +
+            ", fewer than average.window = " + std::to_string(pipeline.window);
+  return text;
+}
+
+std::vector<std::size_t> frames_of(const WindowSchedule& schedule, std::span<const std::size_t> wanted) {
+  std::vector<std::size_t> frames;
+  for (const FrameSpan& part : schedule.parts)
+    frames.insert(frames.end(), wanted.begin() + static_cast<std::ptrdiff_t>(part.first),
+                  wanted.begin() + static_cast<std::ptrdiff_t>(part.end()));
+  return frames;
 }
 
 }  // namespace grainvdb

@@ -1,9 +1,12 @@
 #pragma once
-/// In which order frames are visited: window by window, each swept as often as the plan asks.
+/// In which order frames are visited: window by window, each swept as often as the plan asks. Where windows overlap the
+/// first sweep visits only the frames that no window before has.
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "average/time_windows.hpp"
 #include "grainvdb/pipeline.hpp"
 
 namespace grainvdb {
@@ -12,14 +15,24 @@ namespace grainvdb {
 struct Visit {
   std::size_t frame = 0;  ///< index into the source
   std::size_t sweep = 0;
+  std::size_t window = 0;
+  std::size_t block = 0;     ///< of its window; where windows overlap, a frame of the first sweep has none
+  bool begins_part = false;  ///< the first of a part of the schedule
   bool ends_sweep = false;   ///< the last of its sweep over the window
   bool ends_window = false;  ///< the last of its window
 };
 
-/// How many output times a number of frames makes.
-std::size_t window_count(const Pipeline& pipeline, std::size_t frames);
+/// What the pipeline says of output times.
+TimeWindows time_windows(const Pipeline& pipeline);
 
-/// `wanted` in windows of the pipeline's length, the last of which may be shorter.
-std::vector<Visit> schedule_visits(const Pipeline& pipeline, std::span<const std::size_t> wanted, std::size_t sweeps);
+/// The visits of a schedule for the frames `wanted`.
+std::vector<Visit> schedule_visits(const WindowSchedule& schedule, std::span<const std::size_t> wanted,
+                                   std::size_t sweeps);
+
+/// How a schedule averages its frames, in words; also where it falls short of what the pipeline asks for.
+std::string describe(const WindowSchedule& schedule, const Pipeline& pipeline);
+
+/// Those of the frames `wanted` that are in any window.
+std::vector<std::size_t> frames_of(const WindowSchedule& schedule, std::span<const std::size_t> wanted);
 
 }  // namespace grainvdb

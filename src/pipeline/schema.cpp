@@ -9,6 +9,7 @@
 
 #include "grainvdb/field_sink.hpp"
 #include "grainvdb/units.hpp"
+#include "pipeline/average_keys.hpp"
 #include "pipeline/frame_range.hpp"
 #include "pipeline/text.hpp"
 
@@ -191,15 +192,6 @@ void add_method(Schema& schema) {
                  [](Pipeline& p, const ConfigValue& v) { p.cutoff = std::get<double>(v); });
   cutoff.required = true;
   schema.keys.push_back(cutoff);
-
-  schema.sections.push_back({"average", "Averages over time."});
-  KeyInfo window{"average", "window", ValueType::window, "Frames per output time; 'all' makes one mean of all frames."};
-  window.default_value = std::string("all");
-  window.minimum = 1;
-  window.apply = [](Pipeline& p, const ConfigValue& v) {
-    p.window = std::holds_alternative<std::int64_t>(v) ? static_cast<std::size_t>(std::get<std::int64_t>(v)) : 0;
-  };
-  schema.keys.push_back(window);
 }
 
 void add_output(Schema& schema, const StageRegistry& registry) {
@@ -355,6 +347,7 @@ Schema make_schema(const StageRegistry& registry) {
   add_contacts(schema);
   add_selection(schema);
   add_method(schema);
+  add_average_keys(schema);
   add_output(schema, registry);
   add_stages(schema, registry);
   add_limits(schema);
@@ -382,7 +375,7 @@ std::string accepted(const KeyInfo& key) {
     case ValueType::window:
       break;
   }
-  return "all, or a whole number" + range_of(key);
+  return "all, none, or a whole number" + range_of(key);
 }
 
 }  // namespace grainvdb

@@ -24,7 +24,7 @@ enum class ValueType {
   integers,
   numbers,
   frame_range,  ///< "3", "a:b" or "a:b:c"; kept as text
-  window        ///< the text "all" or a number of frames
+  window        ///< the text "all" or "none", or a number of frames
 };
 
 /// A value of a pipeline file; which alternative follows from the type of its key.

@@ -4,15 +4,28 @@
 
 namespace grainvdb {
 
-WindowAverager::WindowAverager(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice)
-    : plan_(plan), setting_(pipeline, lattice), bytes_per_leaf_(MomentSums(plan.means).bytes(1)) {
+namespace {
+
+const std::vector<MomentPtr> no_blocks;
+
+/// What a leaf takes at most: in the parts that are kept for further windows, and in the window.
+std::size_t bytes_per_leaf(const Plan& plan, const WindowSchedule& schedule) {
+  const std::size_t sums = WindowSums::bytes_per_leaf(plan.means, no_blocks, 0);
+  return schedule.overlapping ? (schedule.most_parts() + 1) * sums : sums;
+}
+
+}  // namespace
+
+WindowAverager::WindowAverager(const Pipeline& pipeline, const Plan& plan, const WindowSchedule& schedule,
+                               const Lattice& lattice)
+    : plan_(plan), schedule_(schedule), setting_(pipeline, lattice), bytes_per_leaf_(bytes_per_leaf(plan, schedule)) {
   for (const Sweep& sweep : plan.sweeps) groups_.push_back(group_moments(sweep));
   begin_window();
 }
 
 void WindowAverager::begin_window() {
   means_.reset();
-  sums_.emplace(plan_.means);
+  sums_.emplace(plan_.means, no_blocks);
 }
 
 std::unique_ptr<FrameContext> WindowAverager::prepare(std::shared_ptr<const Material> material,
@@ -22,13 +35,33 @@ std::unique_ptr<FrameContext> WindowAverager::prepare(std::shared_ptr<const Mate
   return context;
 }
 
-void WindowAverager::add(FrameContext& frame) {
-  frame.run(*sums_, means_ ? &*means_ : nullptr);
-  sums_->end_frame();
+WindowSums& WindowAverager::destination(const Visit& visit) {
+  if (schedule_.overlapping && visit.sweep == 0) {
+    for (; first_part_ < schedule_.windows[visit.window].first_part; ++first_part_) parts_.pop_front();
+    if (visit.begins_part) parts_.emplace_back(plan_.means, no_blocks);
+    return parts_.back();
+  }
+  if (visit.begins_part) sums_->begin_block(visit.block);
+  return *sums_;
 }
 
-void WindowAverager::end_sweep(std::size_t frames) {
-  sums_->end_sweep(frames);
+void WindowAverager::add(FrameContext& frame, const Visit& visit) {
+  WindowSums& sums = destination(visit);
+  frame.run(sums, bytes_per_leaf_, means_ ? &*means_ : nullptr);
+  sums.end_frame();
+}
+
+void WindowAverager::join_parts(const Window& window) {
+  std::size_t part = window.first_part - first_part_;
+  for (std::size_t block = 0; block < window.blocks.size(); ++block) {
+    sums_->begin_block(block);
+    for (std::size_t k = 0; k < window.blocks[block]; ++k, ++part) sums_->add(parts_[part]);
+  }
+}
+
+void WindowAverager::end_sweep(const Visit& visit) {
+  if (schedule_.overlapping && visit.sweep == 0) join_parts(schedule_.windows[visit.window]);
+  sums_->end_sweep();
   means_.emplace(sums_->means());
 }
 

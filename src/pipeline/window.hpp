@@ -2,24 +2,27 @@
 /// The moments of one output time after another, on one lattice: the frames of a window, swept as often as the plan
 /// asks.
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "average/moment_sums.hpp"
+#include "average/window_sums.hpp"
 #include "grainvdb/lattice.hpp"
 #include "grainvdb/pipeline.hpp"
 #include "grainvdb/plan.hpp"
 #include "pipeline/frame_context.hpp"
 #include "pipeline/material.hpp"
+#include "pipeline/schedule.hpp"
 #include "pipeline/splat_groups.hpp"
 
 namespace grainvdb {
 
 class WindowAverager {
  public:
-  /// Pipeline and plan must outlive the averager.
-  WindowAverager(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice);
+  /// Pipeline, plan and schedule must outlive the averager.
+  WindowAverager(const Pipeline& pipeline, const Plan& plan, const WindowSchedule& schedule, const Lattice& lattice);
   WindowAverager(const WindowAverager&) = delete;
   WindowAverager& operator=(const WindowAverager&) = delete;
 
@@ -29,19 +32,25 @@ class WindowAverager {
   std::unique_ptr<FrameContext> prepare(std::shared_ptr<const Material> material, std::size_t sweep) const;
 
   /// Adds the next frame of the current sweep. Throws LimitError when the sums would outgrow limits.memory_gb.
-  void add(FrameContext& frame);
-  /// Ends a sweep over `frames` frames.
-  void end_sweep(std::size_t frames);
+  void add(FrameContext& frame, const Visit& visit);
+  /// Ends a sweep over a window.
+  void end_sweep(const Visit& visit);
   /// Of the sweeps that have ended: a view of the sums, which begin_window takes away.
   const MomentMeans& means() const { return *means_; }
   void begin_window();
 
  private:
+  WindowSums& destination(const Visit& visit);
+  void join_parts(const Window& window);
+
   const Plan& plan_;
+  const WindowSchedule& schedule_;
   SplatSetting setting_;
   std::vector<SweepGroups> groups_;  // of each sweep
-  std::size_t bytes_per_leaf_;       // of the sums
-  std::optional<MomentSums> sums_;
+  std::size_t bytes_per_leaf_;       // of all sums
+  std::deque<WindowSums> parts_;     // that overlapping windows share
+  std::size_t first_part_ = 0;       // of those
+  std::optional<WindowSums> sums_;   // of the window
   std::optional<MomentMeans> means_;
 };
 

@@ -189,6 +189,14 @@ TEST(Overrides, WinOverTheFileAndOverEarlierOnes) {
   EXPECT_EQ(p.input.contacts.files.size(), 1U);
 }
 
+TEST(LoadPipeline, TimeWindows) {
+  EXPECT_EQ(load(minimal_text(), {"average.window=none"}).window, 1U);
+  EXPECT_EQ(load(minimal_text(), {"average.window=all"}).window, 0U);
+  const Pipeline p = load(minimal_text(), {"average.window=10", "average.step=3"});
+  EXPECT_EQ(p.window, 10U);
+  EXPECT_EQ(p.window_step, 3U);
+}
+
 TEST(Overrides, RangesOfFramesNeedNoQuotes) {
   EXPECT_EQ(load(minimal_text(), {"frames=10:"}).frames.start, 10);
   EXPECT_EQ(load(minimal_text(), {"frames=::"}).frames.step, 1);

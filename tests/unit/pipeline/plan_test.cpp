@@ -247,6 +247,20 @@ TEST(Describe, MarksFieldsThatAreNotWrittenAndTimeMeans) {
   EXPECT_THAT(text, HasSubstr("contact_stress [mass/(length time^2)]"));  // no unit system is known
 }
 
+TEST(Describe, SaysHowFramesAreAveraged) {
+  const StageRegistry registry = test::example_registry();
+  Pipeline p = wanting(registry, {"phi"});
+  const auto text = [&] { return describe(make_plan(p, registry), p); };
+  EXPECT_THAT(text(), HasSubstr("frames: all; averaged over all of them\n"));
+  EXPECT_THAT(text(), HasSubstr("at most 12 bytes (1 mean channels of 8, 1 field"));
+  p.window = 1;
+  EXPECT_THAT(text(), HasSubstr("frames: all; each by itself\n"));
+  p.window = 100;
+  p.window_step = 4;
+  EXPECT_THAT(text(), HasSubstr("averaged over windows of 100 frames, one every 4 frames\n"));
+  EXPECT_THAT(text(), HasSubstr("at most 212 bytes (1 mean channels of 8 in 26 sums, "));
+}
+
 TEST(Describe, DrawsTheGraph) {
   const StageRegistry registry = test::example_registry();
   const Pipeline p = wanting(registry, {"stress"});

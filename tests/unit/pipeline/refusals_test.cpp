@@ -137,6 +137,10 @@ TEST(Refusals, ImpossibleValues) {
   EXPECT_THAT(refusal(with("grainvdb: 1", "grainvdb: 2")),
               AllOf(StartsWith("FILE:1: grainvdb is too large"), HasSubstr("another release")));
   EXPECT_THAT(refusal(plus("average: {window: 0}\n")), StartsWith("FILE:10: average.window is too small"));
+  EXPECT_THAT(refusal(plus("average: {window: 3, step: 0}\n")), StartsWith("FILE:10: average.step is too small"));
+  EXPECT_THAT(
+      refusal(plus("average: {step: 5}\n")),
+      AllOf(StartsWith("FILE:10: average.step has no meaning for one mean of all frames"), HasSubstr("frames: ::5")));
   EXPECT_THAT(refusal(plus("limits: {extent: 0}\n")), StartsWith("FILE:10: limits.extent is too small"));
   EXPECT_THAT(refusal(plus("limits: {extent: 1e10}\n")), StartsWith("FILE:10: limits.extent is too large"));
   EXPECT_THAT(refusal(plus("limits: {memory_gb: -1}\n")), StartsWith("FILE:10: limits.memory_gb is too small"));
