@@ -15,6 +15,7 @@
 #include "run_bench.hpp"
 #include "splat_bench.hpp"
 #include "threads.hpp"
+#include "tracer_bench.hpp"
 
 namespace grainvdb::bench {
 namespace {
@@ -23,6 +24,7 @@ int check_results() {
   check_splat(tiny_sizes());
   check_contacts(tiny_sizes());
   check_run(tiny_sizes());
+  check_tracers(tiny_sizes());
   return all_checks_succeeded() ? 0 : 1;
 }
 
@@ -57,6 +59,7 @@ int main(int argc, char** argv) {
     register_growth(sizes);
     register_memory(sizes);
     register_run(sizes);
+    register_tracers(sizes);
     describe_build();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -11,16 +11,18 @@ struct Sizes {
   /// Of the comparison of contacts, six half branches each, and of every frame of a whole run.
   std::size_t contact_particles = 16'000;
   std::size_t frames = 3;
+  std::size_t tracers = 1'000'000;
   std::vector<std::size_t> growth{100'000, 1'000'000, 4'000'000};
 };
 
 inline Sizes quick_sizes() {
-  return {.particles = 32'000, .contact_particles = 4'000, .frames = 2, .growth = {100'000, 1'000'000}};
+  return {
+      .particles = 32'000, .contact_particles = 4'000, .frames = 2, .tracers = 100'000, .growth = {100'000, 1'000'000}};
 }
 
 /// For checks of the results alone.
 inline Sizes tiny_sizes() {
-  return {.particles = 500, .contact_particles = 256, .frames = 1, .growth = {}};
+  return {.particles = 500, .contact_particles = 256, .frames = 1, .tracers = 1'000, .growth = {}};
 }
 
 }  // namespace grainvdb::bench

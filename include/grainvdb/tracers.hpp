@@ -67,7 +67,8 @@ struct AdvanceReport {
   std::size_t above_gradient_limit = 0;  ///< moving tracers with K > gradient_number_limit; 0 unless asked for
 };
 
-/// A set of tracers at one time. Memory: 110 bytes per tracer, whatever the length of the histories.
+/// A set of tracers at one time. Memory: at most 118 bytes per tracer, whatever the length of the
+/// histories.
 class Tracers {
  public:
   /// Seeds outside an open side of the box have left the domain, seeds without velocity the material: they are kept,
