@@ -273,7 +273,7 @@ class Adaptive {
     store(step.error.tracer[0], error);
     store(step.y.tracer[0], y);
     double worst = 0;
-    for (int i = 0; i < flow_lanes; ++i) {
+    for (std::size_t i = 0; i < flow_lanes; ++i) {
       const double tolerated = i < 3 ? steps_.tolerance : steps_.tolerance / voxel_;
       const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::abs(y[i]);
       if (!std::isnan(error[i])) worst = std::max(worst, std::abs(error[i]) / std::max(tolerated, rounding));

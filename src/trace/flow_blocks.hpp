@@ -11,7 +11,7 @@
 namespace grainvdb {
 
 /// How many values a voxel has in a block: the velocity and the shear rate.
-inline constexpr int flow_lanes = 4;
+inline constexpr std::size_t flow_lanes = 4;
 
 struct FlowBlocks {
   FlowBlocks(const Lattice& lattice, const SparseField& velocity, const SparseField* shear_rate,
@@ -20,10 +20,12 @@ struct FlowBlocks {
   /// The block of the leaf with this number; one without values for the number of leaves, so that every number that
   /// LeafIndex::find gives has a block.
   const float* block(std::size_t leaf) const { return values.data() + leaf * block_size(); }
-  std::size_t block_size() const { return static_cast<std::size_t>(edge) * edge * edge * flow_lanes; }
+  std::size_t block_size() const { return offset({edge - 1, edge - 1, edge - 1}) + flow_lanes; }
   /// Where the block's first voxel used by a cell is: the cell's lower voxel, less `below` along each axis.
   std::size_t offset(const std::array<int, 3>& in_leaf) const {
-    return static_cast<std::size_t>(((in_leaf[0] * edge + in_leaf[1]) * edge + in_leaf[2]) * flow_lanes);
+    const auto at = [&](std::size_t a) { return static_cast<std::size_t>(in_leaf[a]); };
+    const auto n = static_cast<std::size_t>(edge);
+    return ((at(0) * n + at(1)) * n + at(2)) * flow_lanes;
   }
 
   Lattice lattice;
