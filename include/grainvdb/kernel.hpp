@@ -55,4 +55,8 @@ class LucyKernel {
   double norm_;  // 105/(16 π c³)
 };
 
+/// max |h³ Σ W - 1| over all places of a grain between the voxel centres, for a cutoff of so many voxels h: the
+/// relative error of its volume in a field. Not smaller than 2.4e-5, its value at six voxels.
+double grain_volume_error(double cutoff_in_voxels);
+
 }  // namespace grainvdb

@@ -14,10 +14,10 @@ namespace grainvdb {
 enum class Reason : std::uint32_t {
   outside = 1u << 0,              ///< no kernel reaches the voxel
   no_material = 1u << 1,          ///< φ = 0: reached by contacts only; velocity, diameter, temperature, … undefined
-  low_pressure = 1u << 2,         ///< P ≤ P_min: μ, I, g, gd/δv undefined
+  low_pressure = 1u << 2,         ///< P ≤ pressure_floor: μ, I, g, gd/δv undefined
   no_shear_stress = 1u << 3,      ///< μ = |σ|/P ≤ its minimum (isotropic to rounding): g = |γ̇|/μ undefined
-  no_fluctuation = 1u << 4,       ///< T ≤ T_min: gd/δv undefined
-  no_spin_fluctuation = 1u << 5,  ///< δω² ≤ its minimum: g/δω, δv/(d δω) undefined
+  no_fluctuation = 1u << 4,       ///< T ≤ T_min or within the rounding of velocities: gd/δv undefined
+  no_spin_fluctuation = 1u << 5,  ///< δω² ≤ its minimum or within rounding: g/δω, δv/(d δω) undefined
   one_sided_gradient =
       1u << 6,  ///< a neighbour along an axis is missing: that derivative is one-sided (a value, less accurate)
   no_gradient = 1u << 7,             ///< both neighbours along an axis are missing: gradient undefined

@@ -38,6 +38,7 @@ struct Limits {
   std::int64_t dense_voxels = 4'000'000'000;  ///< voxels of the written box
   double memory_gb = 0;                       ///< of moment sums; 0: three quarters of the machine's memory
   std::size_t frames_in_flight = 0;           ///< read but not yet summed; 0: chosen by the number of threads
+  double volume_error = 0.05;                 ///< relative, of a grain's volume in the fields (grain_volume_error)
 };
 
 struct Pipeline {

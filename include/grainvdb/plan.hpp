@@ -24,7 +24,7 @@ struct Plan {
 
 /// Throws ConfigError for an unknown field (with "did you mean"), for a cycle among stages (naming it), and for a
 /// kernel that could miss every voxel centre (c < √3/2 h) or is too narrow for a moment that interpolates to particles
-/// (c < √3 h).
+/// (c < √3 h). Throws LimitError for voxels so coarse that the volume of a grain errs by more than limits.volume_error.
 Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry = StageRegistry::standard());
 
 /// The plan in words, as `grainvdb graph` prints it.

@@ -2,6 +2,7 @@
 
 #include "derive/register.hpp"
 #include "derive/voxelwise.hpp"
+#include "fields/resolution.hpp"
 
 namespace grainvdb {
 namespace {
@@ -37,18 +38,20 @@ Stage gd_over_dv() {
   s.equation = "g d/sqrt(T)  (2)";
   s.options = {{.name = "temperature_min",
                 .default_value = 0.0,
-                .help = "undefined where the granular temperature <= temperature_min [velocity^2]",
+                .help = "undefined where the granular temperature <= temperature_min [velocity^2], or below "
+                        "(velocity.resolution |u|)^2",
                 .minimum = 0}};
   set_formula(
       s,
       [](const StageSettings& settings) {
         const double temperature_min = option<double>(settings, "gd_over_dv", "temperature_min");
-        return [temperature_min](VoxelNotes& notes, double g, double d, double temperature) {
-          return temperature > temperature_min ? g * d / std::sqrt(temperature)
-                                               : notes.undefined(Reason::no_fluctuation);
+        const double resolution = option<double>(settings, "velocity", "resolution");
+        return [=](VoxelNotes& notes, double g, double d, double temperature, const Vec3& u) {
+          const bool fluctuates = temperature > temperature_min && temperature >= noise_square(resolution, u);
+          return fluctuates ? g * d / std::sqrt(temperature) : notes.undefined(Reason::no_fluctuation);
         };
       },
-      ScalarInput{"fluidity"}, ScalarInput{"mean_diameter"}, ScalarInput{"temperature"});
+      ScalarInput{"fluidity"}, ScalarInput{"mean_diameter"}, ScalarInput{"temperature"}, VectorInput{"velocity"});
   return s;
 }
 

@@ -17,19 +17,18 @@ Stage mu_mohr_coulomb() {
   s.equation = "(p3 - p1)/(2 sqrt(p3 p1)), p1 < p3 the extreme principal stresses, compression positive";
   set_formula(
       s,
-      [](const StageSettings& settings) {
-        const double pressure_min = option<double>(settings, "pressure", "pressure_min");
-        return [pressure_min](VoxelNotes& notes, double pressure, const Vec3& principal) {
+      [](const StageSettings&) {
+        return [](VoxelNotes& notes, double pressure, double floor, const Vec3& principal) {
           const double least = -principal[0];
           const double most = -principal[2];
-          const bool low = !(pressure > pressure_min);
+          const bool low = !(pressure > floor);
           const bool tensile = !(least > float_tensor_rounding * most);
           if (low) notes.add(Reason::low_pressure);
           if (tensile) notes.add(Reason::tensile_stress);
           return low || tensile ? std::nan("") : (most - least) / (2 * std::sqrt(most * least));
         };
       },
-      ScalarInput{"pressure"}, VectorInput{"principal_stress"});
+      ScalarInput{"pressure"}, ScalarInput{"pressure_floor"}, VectorInput{"principal_stress"});
   return s;
 }
 

@@ -12,16 +12,15 @@ void register_rheology(StageRegistry& registry) {
   s.equation = "I = |gd| d sqrt(rho_p/P), rho_p = rho/phi";
   set_formula(
       s,
-      [](const StageSettings& settings) {
-        const double pressure_min = option<double>(settings, "pressure", "pressure_min");
-        return [pressure_min](VoxelNotes& notes, double rate, double p, double d, double density, double phi) {
+      [](const StageSettings&) {
+        return [](VoxelNotes& notes, double rate, double p, double floor, double d, double density, double phi) {
           if (!(phi > 0)) return notes.undefined(Reason::no_material);
-          if (!(p > pressure_min)) return notes.undefined(Reason::low_pressure);
+          if (!(p > floor)) return notes.undefined(Reason::low_pressure);
           return rate * d * std::sqrt(density / phi / p);
         };
       },
-      ScalarInput{"shear_rate"}, ScalarInput{"pressure"}, ScalarInput{"mean_diameter"}, ScalarInput{"density"},
-      ScalarInput{"phi"});
+      ScalarInput{"shear_rate"}, ScalarInput{"pressure"}, ScalarInput{"pressure_floor"}, ScalarInput{"mean_diameter"},
+      ScalarInput{"density"}, ScalarInput{"phi"});
   registry.add(std::move(s));
 }
 

@@ -1,8 +1,10 @@
+#include <algorithm>
 #include <cmath>
 
 #include "derive/register.hpp"
 #include "derive/tensor.hpp"
 #include "derive/voxelwise.hpp"
+#include "fields/resolution.hpp"
 
 namespace grainvdb {
 namespace {
@@ -16,11 +18,49 @@ Stage pressure() {
   s.equation = "P = -Tr(sigma)/3  (A11)";
   s.options = {{.name = "pressure_min",
                 .default_value = 0.0,
-                .help = "fields that are ratios to the pressure are undefined where P <= pressure_min [stress]",
+                .help = "fields that are ratios to the pressure are undefined where P <= pressure_min [stress], or "
+                        "below pressure_floor",
                 .minimum = 0}};
   set_formula(
       s, [](const StageSettings&) { return [](VoxelNotes&, const Tensor& stress) { return -trace(stress) / 3; }; },
       TensorInput{"stress"});
+  return s;
+}
+
+double pressure_min_of(const StageSettings& settings) {
+  return option<double>(settings, "pressure", "pressure_min");
+}
+double resolution_of(const StageSettings& settings) {
+  return option<double>(settings, "velocity", "resolution");
+}
+
+// Grains that fall or move side by side have no pressure; what their velocities' rounding leaves of the kinetic stress
+// is no number to divide by. Where there is no material, only contacts give a pressure, and nothing was rounded.
+Stage pressure_floor() {
+  Stage s;
+  s.name = "pressure_floor";
+  s.dimension = dimension::stress;
+  s.additive = true;
+  s.description = "the pressure up to which ratios to the pressure are undefined";
+  s.equation = "max(pressure_min, rho (velocity.resolution |u|)^2)";
+  s.needs = [](const StageSettings& settings) {
+    return resolution_of(settings) > 0 ? StageNeeds{{"density", "velocity"}, {}} : StageNeeds{};
+  };
+  s.compute = [](const StageInput& in, SparseField& out) {
+    const double least = pressure_min_of(in.settings());
+    const double resolution = resolution_of(in.settings());
+    for_each_leaf(in.topology(), [&](std::size_t leaf) {
+      in.topology().mask(leaf).for_each([&](int v) {
+        double noise = 0;
+        if (resolution > 0 && in.field("density").leaf(leaf)[v] > 0) {
+          const SparseField& u = in.field("velocity");
+          noise = in.field("density").leaf(leaf)[v] *
+                  noise_square(resolution, {u.leaf(leaf, 0)[v], u.leaf(leaf, 1)[v], u.leaf(leaf, 2)[v]});
+        }
+        out.leaf(leaf)[v] = static_cast<float>(std::max(least, noise));
+      });
+    });
+  };
   return s;
 }
 
@@ -47,13 +87,12 @@ Stage mu() {
   s.equation = "mu = |sigma|/P";
   set_formula(
       s,
-      [](const StageSettings& settings) {
-        const double pressure_min = option<double>(settings, "pressure", "pressure_min");
-        return [pressure_min](VoxelNotes& notes, double p, double tau) {
-          return p > pressure_min ? tau / p : notes.undefined(Reason::low_pressure);
+      [](const StageSettings&) {
+        return [](VoxelNotes& notes, double p, double floor, double tau) {
+          return p > floor ? tau / p : notes.undefined(Reason::low_pressure);
         };
       },
-      ScalarInput{"pressure"}, ScalarInput{"shear_stress"});
+      ScalarInput{"pressure"}, ScalarInput{"pressure_floor"}, ScalarInput{"shear_stress"});
   return s;
 }
 
@@ -61,6 +100,7 @@ Stage mu() {
 
 void register_stress_invariants(StageRegistry& registry) {
   registry.add(pressure());
+  registry.add(pressure_floor());
   registry.add(shear_stress());
   registry.add(mu());
 }

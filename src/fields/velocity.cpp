@@ -1,5 +1,6 @@
 #include "fields/moments.hpp"
 #include "fields/register.hpp"
+#include "fields/resolution.hpp"
 #include "fields/voxels.hpp"
 
 namespace grainvdb {
@@ -14,7 +15,8 @@ void register_velocity(StageRegistry& registry) {
   s.options = {{.name = "weighting",
                 .default_value = std::string("volume"),
                 .help = "weight of each particle: volume as (7), or mass as the momentum balance wants it",
-                .choices = {"volume", "mass"}}};
+                .choices = {"volume", "mass"}},
+               resolution_option("ratios to smaller fluctuations, or to the pressure these would have, are undefined")};
   s.needs = [](const StageSettings& settings) {
     return StageNeeds{{}, {velocity_numerator(settings), velocity_denominator(settings)}};
   };

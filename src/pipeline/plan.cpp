@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <locale>
 #include <map>
 #include <numbers>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "pipeline/number.hpp"
@@ -151,6 +153,26 @@ void check_reach(const Pipeline& pipeline) {
          "Use smaller voxels or a wider kernel."});
 }
 
+std::string rounded(double x) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(3);
+  text << x;
+  return text.str();
+}
+
+// Sums over coarse voxels are no integrals: a grain's volume comes out larger or smaller with its place.
+void check_voxel(const Pipeline& pipeline) {
+  const double error = grain_volume_error(pipeline.cutoff / pipeline.voxel);
+  if (error > pipeline.limits.volume_error)
+    throw LimitError(
+        {pipeline.location("lattice.voxel"), "the voxels are too coarse for the kernel",
+         "a cutoff of " + rounded(pipeline.cutoff / pipeline.voxel) +
+             " voxels, at which the volume of a grain is off by up to " + rounded(error),
+         "at most limits.volume_error = " + print_number(pipeline.limits.volume_error) + "; 3 voxels give 0.0022",
+         "Use smaller voxels or a wider kernel, or raise the limit."});
+}
+
 // Sampling at a particle reads the eight voxels around it, the farthest of them up to √3 h away; all must be within
 // its kernel.
 void check_cutoff(const Pipeline& pipeline, const Stage& stage, const Moment& moment) {
@@ -171,6 +193,7 @@ void check_cutoff(const Pipeline& pipeline, const Stage& stage, const Moment& mo
 
 Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
   check_reach(pipeline);
+  check_voxel(pipeline);
   const StageOrder stages(pipeline, registry);
   Plan plan;
   plan.stages = stages.ordered();

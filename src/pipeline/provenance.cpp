@@ -4,7 +4,9 @@
 #include <set>
 #include <string>
 
+#include "grainvdb/kernel.hpp"
 #include "grainvdb/version.hpp"
+#include "pipeline/number.hpp"
 
 namespace grainvdb {
 namespace {
@@ -33,6 +35,7 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
           {"inputs", lines(source.files(), [](const auto& f) { return f.first + " " + std::to_string(f.second); })},
           {"units", source.units().name},
           {"steps", lines(frames, step)},
+          {"grain_volume_error", print_number(grain_volume_error(pipeline.cutoff / pipeline.voxel))},
           {"skipped_frames", lines(skipped, step)},
           {"averaging", lines(report.averaging, plain)},
           {"columns_read", lines(columns, plain)},

@@ -115,7 +115,7 @@ TEST(Run, UndefinedVoxelsAreCountedByReason) {
   const CommandResult result = run_command(
       {"run", "p.yaml", "--set", "output.fields=[mu]", "--set", "stages.pressure.pressure_min=1e9"}, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("mask: 512 voxels low_pressure (P <= P_min"));
+  EXPECT_THAT(result.out, HasSubstr("mask: 512 voxels low_pressure (P <= pressure_floor"));
 }
 
 }  // namespace

@@ -26,8 +26,9 @@ double sum_of(const FieldCopy& f) {
 /// |h³ Σ φ/V - 1| for one particle that lies `offset` (in voxels) from a voxel centre.
 double volume_error(double cutoff_in_voxels, const Vec3& offset) {
   const double h = 1 / cutoff_in_voxels;
-  const Result r = run(make_pipeline(h, {-0.5 * h, -0.5 * h, -0.5 * h}, 1, {"phi"}),
-                       {one_particle({offset[0] * h, offset[1] * h, offset[2] * h})});
+  Pipeline p = make_pipeline(h, {-0.5 * h, -0.5 * h, -0.5 * h}, 1, {"phi"});
+  p.limits.volume_error = 2;
+  const Result r = run(p, {one_particle({offset[0] * h, offset[1] * h, offset[2] * h})});
   return std::abs(h * h * h * sum_of(r.only().field("phi")) / unit_sphere - 1);
 }
 

@@ -109,12 +109,35 @@ Verdict any_undefined(const U&... inputs) {
   return {false, !(is_in_doubt(inputs) || ...)};
 }
 
+/// What the rounding of a mean vector can make of squared fluctuations.
+Uncertain noise_square(const Voxel& v, const Pipeline& p, const std::string& name) {
+  const double resolution = number_option(p, name, "resolution");
+  Uncertain sum;
+  for (int a = 0; a < 3; ++a) sum = sum + v.get(name, a) * v.get(name, a);
+  return resolution * resolution * sum;
+}
+
+/// a > threshold and a ≥ rounding.
+Verdict fluctuates(const Uncertain& a, double threshold, const Uncertain& rounding) {
+  const Verdict above = exceeds(a, threshold);
+  const Uncertain gap = a - rounding;
+  const Verdict clear{gap.value >= 0, std::abs(gap.value) > gap.error || gap.error == 0};
+  if ((above.sure && !above.yes) || (clear.sure && !clear.yes)) return {false, true};
+  return {above.yes && clear.yes, above.sure && clear.sure};
+}
+
 void stress_fields(Voxel& v, const Pipeline& p) {
   const UncertainTensor s = v.tensor("stress");
   v.put("pressure", 0, -1.0 * trace_third(s));
   v.put("shear_stress", 0, root(0.5 * deviator_square(s)));
   const Uncertain pressure = v.get("pressure");
-  const Verdict low = fails(exceeds(pressure, number_option(p, "pressure", "pressure_min")));
+  Uncertain floor{number_option(p, "pressure", "pressure_min"), 0};
+  if (v.get("density").value > 0) {
+    const Uncertain rounding = v.get("density") * noise_square(v, p, "velocity");
+    floor = {std::max(floor.value, rounding.value), rounding.error};
+  }
+  v.put("pressure_floor", 0, floor);
+  const Verdict low = fails(exceeds(pressure - v.get("pressure_floor"), 0));
   v.note(Reason::low_pressure, low);
   v.put("mu", 0, unless({low}, v.get("shear_stress") / pressure));
 
@@ -166,7 +189,7 @@ void rate_fields(Voxel& v, const Pipeline& p) {
   const Uncertain rate = v.get("shear_rate");
   const Uncertain pressure = v.get("pressure");
   const Uncertain d = v.get("mean_diameter");
-  const Verdict low = fails(exceeds(pressure, number_option(p, "pressure", "pressure_min")));
+  const Verdict low = fails(exceeds(pressure - v.get("pressure_floor"), 0));
   v.put("inertial_number", 0,
         unless({any_undefined(rate, d), low}, rate * d * root(v.get("density") / v.get("phi") / pressure)));
 
@@ -199,8 +222,10 @@ void ratio_fields(Voxel& v, const Pipeline& p) {
   const Uncertain t = v.get("temperature");
   const Uncertain w = v.get("rotational_fluctuation");
   const double t_min = number_option(p, "gd_over_dv", "temperature_min");
-  const Verdict cold = fails(exceeds(t, t_min));
-  const Verdict no_spin = fails(exceeds(w, number_option(p, "g_over_domega", "rotational_fluctuation_min")));
+  const Uncertain u_noise = noise_square(v, p, "velocity");
+  const Verdict cold = fails(fluctuates(t, t_min, u_noise));
+  const Verdict no_spin = fails(fluctuates(w, number_option(p, "g_over_domega", "rotational_fluctuation_min"),
+                                           noise_square(v, p, "angular_velocity")));
 
   v.put("rotational_temperature", 0, d * d * w / 10);
 
@@ -214,7 +239,7 @@ void ratio_fields(Voxel& v, const Pipeline& p) {
 
   const Verdict no_tw = any_undefined(t, d, w);
   // T = temperature_min itself is a value of δv here.
-  const Verdict colder{t.value < t_min, cold.sure};
+  const Verdict colder{t.value < t_min || t.value < u_noise.value, cold.sure};
   if (no_tw.sure && !no_tw.yes) {
     v.note(Reason::no_fluctuation, colder);
     v.note(Reason::no_spin_fluctuation, no_spin);
@@ -304,9 +329,9 @@ Derived derive(const VoxelBox& box, const std::vector<bool>& active, const Uncer
     out.fields[name] = {components,
                         std::vector<Uncertain>(box.size() * static_cast<std::size_t>(components), undefined_value())};
   };
-  for (const char* name :
-       {"shear_rate", "pressure", "shear_stress", "mu", "inertial_number", "fluidity", "gd_over_dv", "g_over_domega",
-        "dv_over_d_domega", "mu_mohr_coulomb", "coaxiality_angle", "rotational_temperature", "principal_gap"})
+  for (const char* name : {"shear_rate", "pressure", "pressure_floor", "shear_stress", "mu", "inertial_number",
+                           "fluidity", "gd_over_dv", "g_over_domega", "dv_over_d_domega", "mu_mohr_coulomb",
+                           "coaxiality_angle", "rotational_temperature", "principal_gap"})
     add(name, 1);
   add("principal_stress", 3);
   add("slip_lines", 6);

@@ -141,6 +141,27 @@ TEST_P(Kernel, FourierTransformIsAccurateAtSmallWaveNumbers) {
 
 INSTANTIATE_TEST_SUITE_P(Cutoffs, Kernel, testing::Values(1.0, 2.4e-3, 17.5));
 
+// Physics section 7: max |h³ΣW - 1| over offsets, two to four digits; and that no other place is worse.
+TEST(GrainVolume, HasTheTabulatedErrors) {
+  const std::pair<double, double> known[] = {{1, 1.089},    {1.25, .244}, {1.5, .0369}, {2, .0157},
+                                             {2.5, 6.0e-4}, {3, 2.2e-3},  {4, 3.3e-4},  {6, 2.4e-5}};
+  for (const auto& [cutoff, expected] : known) {
+    const double worst = grain_volume_error(cutoff);
+    EXPECT_NEAR(worst / expected, 1, 0.03) << cutoff;
+    const LucyKernel kernel(cutoff);
+    for (int place = 0; place < 50; ++place) {
+      const double x[] = {std::fmod(0.618 * place, 1), std::fmod(0.414 * place, 1), std::fmod(0.732 * place, 1)};
+      double sum = 0;
+      for (int i = -7; i <= 7; ++i)
+        for (int j = -7; j <= 7; ++j)
+          for (int k = -7; k <= 7; ++k)
+            sum += kernel.value(std::pow(x[0] - i, 2) + std::pow(x[1] - j, 2) + std::pow(x[2] - k, 2));
+      EXPECT_LE(std::abs(sum - 1), worst * (1 + 1e-9)) << cutoff;
+    }
+  }
+  EXPECT_EQ(grain_volume_error(12), grain_volume_error(6));
+}
+
 TEST(KernelConstruction, RefusesCutoffsThatAreNotPositiveAndFinite) {
   for (double c : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(LucyKernel{c}, std::invalid_argument);

@@ -117,8 +117,9 @@ struct Reference {
     value["gd_over_dv"] = temperature(c) > 0 ? g * diameter(c) / std::sqrt(temperature(c)) : undefined;
     value["rotational_temperature"] = diameter(c) * diameter(c) * spin(c) / 10;
     value["g_over_domega"] = spin(c) > 0 ? g / std::sqrt(spin(c)) : undefined;
+    // T = 0 in a voxel that moves: below the resolution of velocities.
     value["dv_over_d_domega"] =
-        spin(c) > 0 ? std::sqrt(temperature(c)) / (diameter(c) * std::sqrt(spin(c))) : undefined;
+        spin(c) > 0 && temperature(c) > 0 ? std::sqrt(temperature(c)) / (diameter(c) * std::sqrt(spin(c))) : undefined;
     const Eigen3 s = jacobi(sigma);
     const double p1 = -s.values[0];
     const double p3 = -s.values[2];
@@ -190,7 +191,7 @@ TEST(BruteForce, NoNaNWithoutAReasonAndNoInfinity) {
   FakeInput in = random_flow();
   for (const Stage& stage : in.registry().stages()) in.derive(stage.name);
   for (const Stage& stage : in.registry().stages()) {
-    if (stage.name == "velocity") continue;
+    if (stage.name == "velocity" || stage.name == "angular_velocity") continue;
     in.for_each([&](const Coord& c) {
       for (double v : in.values(stage.name, c)) {
         EXPECT_FALSE(std::isinf(v)) << stage.name;
@@ -203,7 +204,7 @@ TEST(BruteForce, NoNaNWithoutAReasonAndNoInfinity) {
 TEST(BruteForce, InactiveVoxelsAreNeitherReadNorWritten) {
   FakeInput in = random_flow();
   for (const Stage& stage : in.registry().stages()) {
-    if (stage.name == "velocity") continue;
+    if (stage.name == "velocity" || stage.name == "angular_velocity") continue;
     const SparseField& field = in.derive(stage.name);
     for (std::size_t l = 0; l < in.topology().leaf_count(); ++l)
       for (int k = 0; k < field.components(); ++k)

@@ -61,6 +61,7 @@ class FakeInput : public StageInput {
         topology_(std::move(topology)),
         mask_(std::make_unique<Mask>(topology_)) {
     register_velocity(registry_);
+    register_angular_velocity(registry_);
     register_gradients(registry_);
     register_rates(registry_);
     register_stress_invariants(registry_);

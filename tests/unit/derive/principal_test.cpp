@@ -139,6 +139,8 @@ TEST(SlipLines, CarryTheLargestRatioOfShearToNormalStress) {
     const int t = k % 3 * 3 + k / 3;  // symmetric
     return 100 * (noise(c, static_cast<std::uint64_t>(std::min(k, t))) - 0.5) - (k % 4 == 0 ? 200 : 0);
   });
+  in.set("density", 0.0);
+  in.set("velocity", std::vector<double>(3, 0.0));
   in.derive("slip_lines");
   in.for_each([&](const Coord& c) {
     const std::vector<double> lines = in.values("slip_lines", c);

@@ -41,7 +41,7 @@ stages:
   temperature: {mode: two_pass_profile}
   contact_stress: {points: 3}
   mu: {least_pressure: 1, strict: false, axes: [z, x]}
-limits: {extent: 5000, dense_voxels: 4e9, memory_gb: 1.5}
+limits: {extent: 5000, dense_voxels: 4e9, memory_gb: 1.5, volume_error: 0.01}
 )";
 }
 
@@ -79,6 +79,7 @@ TEST(LoadPipeline, ReadsEveryKey) {
   EXPECT_EQ(p.limits.extent, 5000);
   EXPECT_EQ(p.limits.dense_voxels, 4'000'000'000);
   EXPECT_EQ(p.limits.memory_gb, 1.5);
+  EXPECT_EQ(p.limits.volume_error, 0.01);
 }
 
 TEST(LoadPipeline, FillsInDefaults) {
@@ -138,6 +139,7 @@ void expect_same(const Pipeline& a, const Pipeline& b) {
   EXPECT_EQ(a.limits.extent, b.limits.extent);
   EXPECT_EQ(a.limits.dense_voxels, b.limits.dense_voxels);
   EXPECT_EQ(a.limits.memory_gb, b.limits.memory_gb);
+  EXPECT_EQ(a.limits.volume_error, b.limits.volume_error);
 }
 
 TEST(LoadPipeline, TheResolvedTextIsTheSamePipeline) {

@@ -205,11 +205,29 @@ TEST(Plan, NoParticleMayFallBetweenTheVoxels) {
   const StageRegistry registry = test::example_registry();
   Pipeline p = wanting(registry, {"phi"});
   p.voxel = 2;
+  p.limits.volume_error = 10;
   p.cutoff = 1.73;  // half a voxel diagonal is 1.73205
   EXPECT_THAT(refusal(p, registry),
               testing::AllOf(testing::StartsWith("p.yaml:7: the kernel is so narrow"),
                              HasSubstr("kernel.cutoff 1.73 at lattice.voxel 2"), HasSubstr("1.732")));
   p.cutoff = 1.7321;
+  EXPECT_NO_THROW(make_plan(p, registry));
+}
+
+TEST(Plan, CoarseVoxelsAreRefusedUnlessTheLimitAllowsThem) {
+  const StageRegistry registry = test::example_registry();
+  Pipeline p = wanting(registry, {"phi"});
+  p.voxel = 2;
+  p.cutoff = 2.5;  // 1.25 voxels: 0.244
+  try {
+    make_plan(p, registry);
+    FAIL() << "not refused";
+  } catch (const LimitError& e) {
+    EXPECT_THAT(e.what(), testing::AllOf(HasSubstr("the voxels are too coarse for the kernel"),
+                                         HasSubstr("a cutoff of 1.25 voxels"), HasSubstr("off by up to 0.24"),
+                                         HasSubstr("limits.volume_error = 0.05")));
+  }
+  p.limits.volume_error = 0.25;
   EXPECT_NO_THROW(make_plan(p, registry));
 }
 
