@@ -1,6 +1,7 @@
 #pragma once
 /// Moments: the additive quantities that are splatted per frame and averaged over time. Fields are formed from their
 /// averages afterwards (physics section 1: first average what adds, then form ratios).
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
@@ -71,8 +72,9 @@ struct Moment {
   std::vector<MomentPtr>
       frame_needs{};  ///< moments of the same frame that must be complete before: one more pass over the particles
   std::vector<MomentPtr>
-      mean_needs{};              ///< moments whose time mean must be known before: one more sweep over the frames
-  LineIntegral line_integral{};  ///< for contacts
+      mean_needs{};                  ///< moments whose time mean must be known before: one more sweep over the frames
+  std::array<bool, 3> whole_axes{};  ///< along these the frame_needs are needed everywhere, not near the particles only
+  LineIntegral line_integral{};      ///< for contacts
 
   /// For sums Σ w q W whose mean is taken off later: the moment Σ w W. The splat then sums w (q - r) with a local
   /// reference r of q, in which single precision loses nothing.

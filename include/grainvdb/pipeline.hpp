@@ -46,10 +46,11 @@ struct Pipeline {
   InputSpec input;
   Selection select;
   FrameRange frames;
-  double voxel = 0;                  ///< h [length]
-  Vec3 origin{};                     ///< of the lattice [length]
-  double cutoff = 0;                 ///< c of the kernel [length]
-  std::size_t window = 0;            ///< frames per time average; 0: all frames in one
+  std::optional<std::pair<Vec3, Vec3>> region;  ///< where fields are wanted: voxel centres in lo ≤ x < hi [length]
+  double voxel = 0;                             ///< h [length]
+  Vec3 origin{};                                ///< of the lattice [length]
+  double cutoff = 0;                            ///< c of the kernel [length]
+  std::size_t window = 0;                       ///< frames per time average; 0: all frames in one
   std::size_t window_step = 0;       ///< frames from the beginning of one average to that of the next; 0: as window
   std::vector<std::string> fields;   ///< what to write, in this order
   StageSettings stages;              ///< option values of every stage, defaults filled in

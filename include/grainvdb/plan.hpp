@@ -1,5 +1,7 @@
 #pragma once
 /// What a pipeline's wanted outputs need, resolved backwards, so that nothing else is read, splatted or written.
+#include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,10 +17,21 @@ struct Sweep {
   std::vector<std::vector<MomentPtr>> passes;  ///< the moments of each pass over a frame, in order
 };
 
+/// How far beyond the voxels that are wanted a moment is needed.
+struct Halo {
+  int stencil = 0;                   ///< voxels, for differences between voxels
+  int samplings = 0;                 ///< how often values at particles are interpolated from voxels on the way
+  std::array<bool, 3> whole_axes{};  ///< along these everywhere
+  auto operator<=>(const Halo&) const = default;
+};
+/// What is enough for both.
+Halo merged(const Halo& a, const Halo& b);
+
 struct Plan {
   std::vector<const Stage*> stages;     ///< in an order in which each finds its needs
   std::vector<Sweep> sweeps;            ///< one, or two where a moment needs a time mean
   std::vector<MomentPtr> means;         ///< the moments whose time means are kept
+  std::map<std::string, Halo> halos;    ///< of every moment, by name
   std::vector<std::string> not_needed;  ///< stages of the registry that this plan does not run
 };
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "grainvdb/mask.hpp"
 #include "grainvdb/pipeline.hpp"
 #include "grainvdb/plan.hpp"
+#include "grainvdb/region.hpp"
 #include "grainvdb/sparse_field.hpp"
 
 namespace grainvdb {
@@ -26,6 +28,7 @@ struct Progress {
 struct RunReport {
   std::size_t frames = 0;         ///< read at least once
   std::size_t active_voxels = 0;  ///< of the last output time
+  std::size_t summed_leaves = 0;  ///< of the last output time: where moments were summed
   std::size_t channels = 0;       ///< splatted per frame, over all sweeps
   std::size_t grids = 0;          ///< OpenVDB grids allocated over the run, the mask apart
   double wall_seconds = 0;
@@ -58,11 +61,15 @@ struct OutputFields {
 /// the same bytes for any number of threads and of frames in flight. Where something fails, what belongs to the
 /// earliest frame is thrown.
 ///
+/// Where a region is given, or the pipeline has one, nothing is computed that fields within do not need, and they are
+/// the same, to the last bit, as without it; output holds the voxels of the region.
+///
 /// `take` and `progress` are called by one thread at a time, `progress` after each frame of each sweep; what they throw
 /// ends the run.
 RunReport compute_fields(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                          const std::function<void(OutputFields)>& take,
-                         const std::function<void(const Progress&)>& progress = {});
+                         const std::function<void(const Progress&)>& progress = {},
+                         const std::optional<Region>& region = {});
 
 /// Runs the whole pipeline into the sinks. One output time is written while the next is computed.
 RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,

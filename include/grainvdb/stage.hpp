@@ -22,6 +22,7 @@ namespace grainvdb {
 struct StageNeeds {
   std::vector<std::string> fields;  ///< fields made by other stages
   std::vector<MomentPtr> moments;   ///< time-averaged moments
+  int stencil = 0;                  ///< how many voxels beyond its own the stage looks
 };
 
 /// What a stage sees when it runs.

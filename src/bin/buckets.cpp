@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -58,40 +59,61 @@ struct Unsorted {
   std::array<std::unique_ptr<std::int32_t[]>, 3> key;
 };
 
-std::size_t image_count(const std::array<Images, 3>& image) {
-  std::size_t n = 1;
-  for (const Images& i : image) n *= static_cast<std::size_t>(i.last - i.first + 1);
-  return n;
-}
+/// The images of a point: calls f(u, key) with the index position and the cell of each one that is wanted.
+class PointImages {
+ public:
+  PointImages(const Lattice& lattice, const Columns3& position, double reach, const std::optional<Region>& cells)
+      : lattice_(lattice), position_(position), reach_(reach), cells_(cells) {}
 
-Unsorted all_images(const Lattice& lattice, const Columns3& position, double reach) {
-  const std::size_t points = position[0].size();
-  const auto images_of = [&](std::size_t p) {
-    return std::array<Images, 3>{images(lattice, 0, position[0][p], reach), images(lattice, 1, position[1][p], reach),
-                                 images(lattice, 2, position[2][p], reach)};
-  };
-  const bool periodic = lattice.period(0) || lattice.period(1) || lattice.period(2);
+  template <class F>
+  void for_each(std::size_t p, const F& f) const {
+    std::array<Images, 3> image;
+    for (int a = 0; a < 3; ++a) image[a] = images(lattice_, a, position_[a][p], reach_);
+    std::array<std::int64_t, 3> k{};
+    for (k[0] = image[0].first; k[0] <= image[0].last; ++k[0])
+      for (k[1] = image[1].first; k[1] <= image[1].last; ++k[1])
+        for (k[2] = image[2].first; k[2] <= image[2].last; ++k[2]) {
+          Vec3 u;
+          for (int a = 0; a < 3; ++a) {
+            const auto& period = lattice_.period(a);
+            u[a] = period ? image[a].u + static_cast<double>(k[a]) * period->count : image[a].u;
+          }
+          const Coord key{cell(u[0]), cell(u[1]), cell(u[2])};
+          if (!cells_ || cells_->holds(key)) f(u, key);
+        }
+  }
+  bool one_each() const { return !cells_ && !lattice_.period(0) && !lattice_.period(1) && !lattice_.period(2); }
+
+ private:
+  const Lattice& lattice_;
+  const Columns3& position_;
+  double reach_;  // in voxels
+  const std::optional<Region>& cells_;
+};
+
+Unsorted all_images(const PointImages& images, std::size_t points) {
   std::vector<std::size_t> start(points + 1);
-  parallel_for(points, [&](std::size_t p) { start[p + 1] = periodic ? image_count(images_of(p)) : 1; });
+  parallel_for(points, [&](std::size_t p) {
+    if (images.one_each()) {
+      start[p + 1] = 1;
+    } else {
+      images.for_each(p, [&](const Vec3&, const Coord&) { ++start[p + 1]; });
+    }
+  });
   std::partial_sum(start.begin(), start.end(), start.begin());
   if (start.back() > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("too many periodic images");
 
   Unsorted all(start.back());
   parallel_for(points, [&](std::size_t p) {
-    const std::array<Images, 3> image = images_of(p);
     std::size_t e = start[p];
-    std::array<std::int64_t, 3> k{};
-    for (k[0] = image[0].first; k[0] <= image[0].last; ++k[0])
-      for (k[1] = image[1].first; k[1] <= image[1].last; ++k[1])
-        for (k[2] = image[2].first; k[2] <= image[2].last; ++k[2], ++e) {
-          all.point[e] = static_cast<std::uint32_t>(p);
-          for (int a = 0; a < 3; ++a) {
-            const auto& period = lattice.period(a);
-            const double u = period ? image[a].u + static_cast<double>(k[a]) * period->count : image[a].u;
-            all.index[a][e] = u;
-            all.key[a][e] = cell(u);
-          }
-        }
+    images.for_each(p, [&](const Vec3& u, const Coord& key) {
+      all.point[e] = static_cast<std::uint32_t>(p);
+      for (int a = 0; a < 3; ++a) {
+        all.index[a][e] = u[a];
+        all.key[a][e] = key[a];
+      }
+      ++e;
+    });
   });
   return all;
 }
@@ -152,14 +174,16 @@ Order by_cell(const Unsorted& all) {
 
 }  // namespace
 
-Buckets bin_points(const Lattice& lattice, const Columns3& position, double reach) {
+Buckets bin_points(const Lattice& lattice, const Columns3& position, double reach, const Region* wanted) {
   if (!(reach >= 0) || !std::isfinite(reach)) throw std::invalid_argument("the reach must be finite and not negative");
   if (position[0].size() > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("too many points");
 
   Buckets b;
   b.start.push_back(0);
   if (position[0].empty()) return b;
-  const Unsorted all = all_images(lattice, position, reach / lattice.voxel());
+  const double voxels = reach / lattice.voxel();
+  const std::optional<Region> cells = wanted == nullptr ? std::nullopt : std::optional(wanted->grown(voxels));
+  const Unsorted all = all_images({lattice, position, voxels, cells}, position[0].size());
   const std::size_t entries = all.count;
   if (entries == 0) return b;
   const Order order = by_cell(all);

@@ -7,6 +7,7 @@
 
 #include "grainvdb/frame.hpp"
 #include "grainvdb/lattice.hpp"
+#include "grainvdb/region.hpp"
 
 namespace grainvdb {
 
@@ -23,8 +24,9 @@ struct Buckets {
 };
 
 /// Wraps the points along periodic axes and adds every image that lies within `reach` [length] of the stored period.
-/// Positions must be finite and their index must fit 31 bits (the executor checks extents before); throws
+/// Cells with no point within `reach` of the leaves that are wanted stay empty; others are complete. nullptr: all
+/// leaves. Positions must be finite and their index must fit 31 bits (the executor checks extents before); throws
 /// std::invalid_argument otherwise.
-Buckets bin_points(const Lattice& lattice, const Columns3& position, double reach);
+Buckets bin_points(const Lattice& lattice, const Columns3& position, double reach, const Region* wanted = nullptr);
 
 }  // namespace grainvdb

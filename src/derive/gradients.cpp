@@ -59,7 +59,8 @@ void set_gradient(Stage& stage, const MeanVector& u) {
     return option<std::string>(settings, name, "method") == "kernel";
   };
   stage.needs = [by_kernel, u](const StageSettings& settings) {
-    return by_kernel(settings) ? StageNeeds{{}, u.moments(settings)} : StageNeeds{{u.field}, {}};
+    if (by_kernel(settings)) return StageNeeds{{}, u.moments(settings)};
+    return StageNeeds{{u.field}, {}, 2};  // the next but one where a neighbour is missing
   };
   stage.compute = [by_kernel, u](const StageInput& in, SparseField& out) {
     if (by_kernel(in.settings())) {

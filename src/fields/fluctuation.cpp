@@ -69,6 +69,7 @@ MomentPtr two_pass_profile_moment(const Fluctuating& f, const StageSettings& set
   for (std::size_t a = 0; a < 3; ++a)
     if (homogeneous[a]) axes += "xyz"[a];
   Moment m = deviation_moment(f, settings, "two_pass_profile over " + axes);
+  m.whole_axes = homogeneous;
   m.values = deviations(f.vector, [n = m.frame_needs[0], d = m.frame_needs[1], homogeneous](const FrameView& view) {
     return view.interpolate_frame_profile(*n, *d, homogeneous);
   });

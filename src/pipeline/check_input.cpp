@@ -66,7 +66,9 @@ ColumnSet all_columns(const Plan& plan) {
 
 void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
                  std::size_t k) {
-  check_places(make_material(source.read(k, all_columns(plan)), pipeline.select), lattice, pipeline);
+  const Material material = make_material(source.read(k, all_columns(plan)), pipeline.select);
+  check_extents(material, lattice, pipeline);
+  if (!pipeline.region) check_spread(material, lattice, pipeline);
 }
 
 Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source) {

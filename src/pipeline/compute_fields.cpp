@@ -9,10 +9,12 @@
 #include "base/ordered_pipeline.hpp"
 #include "base/parallel.hpp"
 #include "grainvdb/run.hpp"
+#include "pipeline/clip_fields.hpp"
 #include "pipeline/derive_fields.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/stopwatch.hpp"
 #include "pipeline/window.hpp"
+#include "pipeline/written_box.hpp"
 
 namespace grainvdb {
 namespace {
@@ -50,16 +52,18 @@ OutputTime time_of(const FrameSource& source, std::span<const std::size_t> frame
 class Stream {
  public:
   Stream(const Pipeline& pipeline, const Plan& plan, FrameSource& source, const std::function<void(OutputFields)>& take,
-         const std::function<void(const Progress&)>& progress)
+         const std::function<void(const Progress&)>& progress, const Lattice& lattice,
+         const std::optional<Region>& region)
       : pipeline_(pipeline),
         plan_(plan),
         source_(source),
         take_(take),
         progress_(progress),
-        lattice_(check_against_input(pipeline, plan, source)),
+        lattice_(lattice),
+        region_(region),
         wanted_(select_frames(pipeline.frames, source.frames().size())),
         schedule_(schedule_windows(time_windows(pipeline), wanted_.size())),
-        averager_(pipeline, plan, schedule_, lattice_) {}
+        averager_(pipeline, plan, schedule_, lattice, region) {}
 
   RunReport run();
 
@@ -69,6 +73,7 @@ class Stream {
   void finish(const Visit& visit, FrameContext& frame);
   void show_progress(const Visit& visit);
   std::span<const std::size_t> frames_in(std::size_t window) const;
+  DerivedFields derive() const;
   void end_window(std::size_t window);
 
   const Pipeline& pipeline_;
@@ -77,6 +82,7 @@ class Stream {
   const std::function<void(OutputFields)>& take_;
   const std::function<void(const Progress&)>& progress_;
   Lattice lattice_;
+  std::optional<Region> region_;
   std::vector<std::size_t> wanted_;
   WindowSchedule schedule_;
   WindowAverager averager_;
@@ -145,6 +151,12 @@ std::span<const std::size_t> Stream::frames_in(std::size_t window) const {
   return std::span(wanted_).subspan(frames.first, frames.count);
 }
 
+DerivedFields Stream::derive() const {
+  DerivedFields all = derive_fields(pipeline_, plan_, lattice_, source_.units(), averager_.means());
+  if (region_) return clip_fields(all, *region_, lattice_);
+  return all;
+}
+
 void Stream::end_window(std::size_t window) {
   // Contacts alone leave every other field undefined.
   const std::span<const std::size_t> frames = frames_in(window);
@@ -154,10 +166,9 @@ void Stream::end_window(std::size_t window) {
                       {},
                       "at least one particle that select keeps",
                       "Check select and frames"});
-  DerivedFields derived = clock_.time("derive", [&] {
-    return tbb::this_task_arena::isolate(
-        [&] { return derive_fields(pipeline_, plan_, averager_.lattice(), source_.units(), averager_.means()); });
-  });
+  DerivedFields derived =
+      clock_.time("derive", [&] { return tbb::this_task_arena::isolate([&] { return derive(); }); });
+  report_.summed_leaves = averager_.means().topology()->leaf_count();
   averager_.begin_window();
   report_.active_voxels = derived.mask.topology()->active_voxel_count();
   report_.grids += derived.grids;
@@ -171,8 +182,9 @@ void Stream::end_window(std::size_t window) {
 
 RunReport compute_fields(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                          const std::function<void(OutputFields)>& take,
-                         const std::function<void(const Progress&)>& progress) {
-  return Stream(pipeline, plan, source, take, progress).run();
+                         const std::function<void(const Progress&)>& progress, const std::optional<Region>& region) {
+  const Lattice lattice = check_against_input(pipeline, plan, source);
+  return Stream(pipeline, plan, source, take, progress, lattice, region ? region : region_of(pipeline, lattice)).run();
 }
 
 }  // namespace grainvdb

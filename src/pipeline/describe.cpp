@@ -5,6 +5,7 @@
 
 #include "grainvdb/plan.hpp"
 #include "grainvdb/units.hpp"
+#include "pipeline/number.hpp"
 #include "pipeline/schedule.hpp"
 
 namespace grainvdb {
@@ -85,6 +86,10 @@ std::vector<std::string> columns_not_read(const Plan& plan) {
   return rest;
 }
 
+std::string corner_text(const Vec3& x) {
+  return '(' + print_number(x[0]) + ", " + print_number(x[1]) + ", " + print_number(x[2]) + ')';
+}
+
 std::string frame_text(const Pipeline& pipeline) {
   const FrameRange& r = pipeline.frames;
   if (!r.start && !r.stop && r.step == 1) return "all";
@@ -104,6 +109,8 @@ std::string window_text(const Pipeline& pipeline) {
 
 std::string describe(const Plan& plan, const Pipeline& pipeline) {
   std::string text = "pipeline " + pipeline.file + '\n';
+  if (pipeline.region)
+    text += "region: " + corner_text(pipeline.region->first) + " to " + corner_text(pipeline.region->second) + '\n';
   text += "frames: " + frame_text(pipeline) + "; " + window_text(pipeline) + "\n\n";
   for (std::size_t s = 0; s < plan.sweeps.size(); ++s) {
     text += "sweep " + std::to_string(s + 1) + " of " + std::to_string(plan.sweeps.size()) + '\n';

@@ -42,6 +42,25 @@ void check_extent(const Material& material, const Columns3& position, const Latt
   }
 }
 
+double memory_limit(const Limits& limits) {
+  if (limits.memory_gb > 0) return limits.memory_gb * 1e9;
+  return 0.75 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+double memory_needed(double leaves, const SplatMemory& memory) {
+  const double summed = std::max(leaves, static_cast<double>(memory.summed_leaves));
+  return leaves * leaf_size * sizeof(double) * memory.buffered + summed * static_cast<double>(memory.bytes_per_leaf);
+}
+
+}  // namespace
+
+void check_extents(const Material& material, const Lattice& lattice, const Pipeline& pipeline) {
+  check_extent(material, material.branches.start, lattice, pipeline,
+               [](std::size_t) { return std::string("a particle with contacts"); });
+  check_extent(material, material.particles.position, lattice, pipeline,
+               [&](std::size_t i) { return "particle " + std::to_string(material.particles.id[i]); });
+}
+
 void check_spread(const Material& material, const Lattice& lattice, const Pipeline& pipeline) {
   const Particles& p = material.particles;
   if (p.size() == 0) return;
@@ -58,26 +77,6 @@ void check_spread(const Material& material, const Lattice& lattice, const Pipeli
                     print_number(voxels),
                     "at most limits.dense_voxels = " + std::to_string(pipeline.limits.dense_voxels),
                     "Choose larger voxels, leave stray particles out with select, or raise the limit"});
-}
-
-double memory_limit(const Limits& limits) {
-  if (limits.memory_gb > 0) return limits.memory_gb * 1e9;
-  return 0.75 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
-
-double memory_needed(double leaves, const SplatMemory& memory) {
-  const double summed = std::max(leaves, static_cast<double>(memory.summed_leaves));
-  return leaves * leaf_size * sizeof(double) * memory.buffered + summed * static_cast<double>(memory.bytes_per_leaf);
-}
-
-}  // namespace
-
-void check_places(const Material& material, const Lattice& lattice, const Pipeline& pipeline) {
-  check_extent(material, material.branches.start, lattice, pipeline,
-               [](std::size_t) { return std::string("a particle with contacts"); });
-  check_extent(material, material.particles.position, lattice, pipeline,
-               [&](std::size_t i) { return "particle " + std::to_string(material.particles.id[i]); });
-  check_spread(material, lattice, pipeline);
 }
 
 bool fits(double leaves, const SplatMemory& memory, const Pipeline& pipeline) {

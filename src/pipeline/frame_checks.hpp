@@ -8,9 +8,10 @@
 
 namespace grainvdb {
 
-/// Refuses positions that lie too far from the box, and material so far apart that the box to be written would exceed
-/// the limit (LimitError).
-void check_places(const Material& material, const Lattice& lattice, const Pipeline& pipeline);
+/// Refuses positions that lie too far from the box (LimitError).
+void check_extents(const Material& material, const Lattice& lattice, const Pipeline& pipeline);
+/// Refuses material so far apart that the box to be written would exceed the limit (LimitError).
+void check_spread(const Material& material, const Lattice& lattice, const Pipeline& pipeline);
 
 /// Memory that a splat takes.
 struct SplatMemory {

@@ -22,7 +22,8 @@ SplatMemory memory_of(const SplatGroup& group, std::size_t bytes_per_leaf, std::
 FrameContext::FrameContext(std::shared_ptr<const Material> material, const SplatSetting& setting,
                            const SweepGroups& groups)
     : material_(std::move(material)), setting_(setting), groups_(groups) {
-  check_places(*material_, setting_.lattice, setting_.pipeline);
+  check_extents(*material_, setting_.lattice, setting_.pipeline);
+  if (setting_.wanted.empty()) check_spread(*material_, setting_.lattice, setting_.pipeline);
 }
 
 void FrameContext::prepare(std::size_t bytes_per_leaf) {
@@ -30,7 +31,7 @@ void FrameContext::prepare(std::size_t bytes_per_leaf) {
     if (group.of_frame_alone()) {
       started_.emplace(&group, start(group, bytes_per_leaf));
     } else if (group.kind() != Moment::Kind::contacts) {
-      bucket_particles();
+      particle_leaves(group.halo);
     }
   }
 }
@@ -53,22 +54,35 @@ void FrameContext::check(std::size_t leaves, const SplatGroup& group, std::size_
 
 void FrameContext::bucket_particles() {
   if (buckets_) return;
-  buckets_ = bin_points(setting_.lattice, particles().position, setting_.kernel.cutoff());
-  topology_ = particle_topology(setting_.lattice, setting_.kernel, *buckets_);
+  buckets_ = bin_points(setting_.lattice, particles().position, setting_.kernel.cutoff(),
+                        setting_.wanted_leaves(groups_.particle_halo));
+}
+
+const std::shared_ptr<const Topology>& FrameContext::particle_leaves(const Halo& halo) {
+  bucket_particles();
+  const Region* const wanted = setting_.wanted_leaves(halo);
+  auto& topology = topologies_[wanted];
+  if (!topology) topology = particle_topology(setting_.lattice, setting_.kernel, *buckets_, wanted);
+  return topology;
 }
 
 FrameContext::Started FrameContext::start(const SplatGroup& group, std::size_t bytes_per_leaf) {
   const bool contacts = group.kind() == Moment::Kind::contacts;
   const Columns3& nodes = contacts ? branches().start : particles().position;
   const double cutoff = setting_.kernel.cutoff();
+  const Region* const wanted = setting_.wanted_leaves(group.halo);
   // Only where the most that it can be is too much is it worth looking closer.
-  if (!fits(most_leaves(setting_.lattice, nodes, 2 * cutoff), memory_of(group, bytes_per_leaf, 0), setting_.pipeline))
+  if (wanted == nullptr &&
+      !fits(most_leaves(setting_.lattice, nodes, 2 * cutoff), memory_of(group, bytes_per_leaf, 0), setting_.pipeline))
     check(static_cast<std::size_t>(least_leaves(setting_.lattice, nodes, cutoff)), group, bytes_per_leaf, 0);
-  if (!contacts) bucket_particles();
-  Started started{values_of(group), nullptr};
-  if (contacts)
+  Started started{values_of(group), nullptr, nullptr};
+  if (contacts) {
     started.contacts = std::make_unique<ContactSplat>(setting_.lattice, setting_.kernel, branches(), started.values,
-                                                      group.value_count(), group.moments[0]->line_integral);
+                                                      group.value_count(), group.moments[0]->line_integral, wanted);
+    started.topology = started.contacts->topology();
+  } else {
+    started.topology = particle_leaves(group.halo);
+  }
   return started;
 }
 
@@ -95,18 +109,17 @@ std::vector<double> FrameContext::values_of(const SplatGroup& group) const {
 
 void FrameContext::splat(const SplatGroup& group, const Started& started, std::size_t bytes_per_leaf,
                          WindowSums& sums) {
-  const std::shared_ptr<const Topology>& topology = started.contacts ? started.contacts->topology() : topology_;
-  check(topology->leaf_count(), group, bytes_per_leaf, sums.leaf_count());
+  check(started.topology->leaf_count(), group, bytes_per_leaf, sums.leaf_count());
   if (started.contacts) {
-    started.contacts->sums(consumer(group, topology, sums));
+    started.contacts->sums(consumer(group, started.topology, sums));
   } else if (group.buffered()) {
     keep(splat_in_double(group, started), {group.moments.begin(), group.moments.begin() + group.asked_for}, sums);
   } else if (group.kind() == Moment::Kind::second_moments) {
-    splat_second_moments(setting_.lattice, setting_.kernel, *buckets_, *topology_, started.values,
-                         consumer(group, topology, sums));
+    splat_second_moments(setting_.lattice, setting_.kernel, *buckets_, *started.topology, started.values,
+                         consumer(group, started.topology, sums));
   } else {
-    splat_particles_fast(setting_.lattice, setting_.kernel, *buckets_, *topology_, started.values, group.weight_of,
-                         consumer(group, topology, sums));
+    splat_particles_fast(setting_.lattice, setting_.kernel, *buckets_, *started.topology, started.values,
+                         group.weight_of, consumer(group, started.topology, sums));
   }
 }
 
@@ -114,7 +127,7 @@ LeafBuffers FrameContext::splat_in_double(const SplatGroup& group, const Started
   const auto splat = group.kind() == Moment::Kind::particle_gradients ? splat_particle_gradients
                      : group.kind() == Moment::Kind::particle_squares ? splat_particle_squares
                                                                       : splat_particles;
-  return splat(setting_.lattice, setting_.kernel, *buckets_, topology_, started.values, group.value_count());
+  return splat(setting_.lattice, setting_.kernel, *buckets_, started.topology, started.values, group.value_count());
 }
 
 LeafConsumer FrameContext::consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology,
@@ -172,22 +185,31 @@ void FrameContext::combine_voxels(const MomentPtr& moment, WindowSums& sums) {
     for (int c = 0; c < need->channels; ++c)
       channels.push_back({places_.at(need->name).buffers, places_.at(need->name).channel + c});
 
-  // All needs are particle moments, and those of one frame share its particle topology.
+  // All needs are particle moments: they share their topology, but where a region leaves some of them more leaves.
   LeafBuffers result(channels.at(0).buffers->topology(), moment->channels);
-  for_each_leaf(*result.topology(), [&](std::size_t leaf) {
+  const Topology& topology = *result.topology();
+  for_each_leaf(topology, [&](std::size_t leaf) {
     std::vector<const double*> in;
     std::vector<double*> out;
-    for (const Place& p : channels) in.push_back(p.buffers->block(leaf, p.channel));
+    for (const Place& p : channels) {
+      const bool shared = p.buffers->topology() == result.topology();
+      in.push_back(
+          p.buffers->block(shared ? leaf : p.buffers->topology()->find(topology.origin(leaf)).value(), p.channel));
+    }
     for (int c = 0; c < moment->channels; ++c) out.push_back(result.block(leaf, c));
     moment->voxels(in, out);
   });
   keep(std::move(result), {moment}, sums);
 }
 
+Outside FrameContext::outside() const {
+  return setting_.wanted.empty() ? Outside::refuse : Outside::undefined;
+}
+
 std::vector<Vec3> FrameContext::interpolate_frame(const Moment& numerator, const Moment& denominator) const {
   const Place n = places_.at(numerator.name);
   const Place d = places_.at(denominator.name);
-  return sample_trilinear(setting_.lattice, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel},
+  return sample_trilinear(setting_.lattice, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel, outside()},
                           particles().position);
 }
 
@@ -196,22 +218,23 @@ std::vector<double> FrameContext::deviation_factors(const Moment& denominator) c
   std::vector<double> weight(particles().size());
   denominator.values(*this, weight);
   return grainvdb::deviation_factors(setting_.lattice, setting_.kernel, particles().position, weight,
-                                     d.buffers->blocks(), d.channel);
+                                     d.buffers->blocks(), d.channel, outside());
 }
 
 std::vector<Vec3> FrameContext::interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
                                                           std::array<bool, 3> homogeneous) const {
   const Place n = places_.at(numerator.name);
   const Place d = places_.at(denominator.name);
-  return sample_profile(setting_.lattice, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel},
+  return sample_profile(setting_.lattice, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel, outside()},
                         particles().position, homogeneous);
 }
 
 std::vector<Vec3> FrameContext::interpolate_mean(const Moment& numerator, const Moment& denominator) const {
   const LeafBlocks& values = means_->values();
-  return sample_trilinear(setting_.lattice,
-                          {values, means_->first_channel(numerator), values, means_->first_channel(denominator)},
-                          particles().position);
+  return sample_trilinear(
+      setting_.lattice,
+      {values, means_->first_channel(numerator), values, means_->first_channel(denominator), outside()},
+      particles().position);
 }
 
 }  // namespace grainvdb

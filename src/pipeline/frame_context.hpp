@@ -15,10 +15,12 @@
 #include "grainvdb/leaf_buffers.hpp"
 #include "grainvdb/moment.hpp"
 #include "grainvdb/pipeline.hpp"
+#include "grainvdb/region.hpp"
 #include "pipeline/frame_checks.hpp"
 #include "pipeline/material.hpp"
 #include "pipeline/splat_groups.hpp"
 #include "splat/leaf_consumer.hpp"
+#include "splat/sample.hpp"
 #include "splat/splat.hpp"
 
 namespace grainvdb {
@@ -29,6 +31,10 @@ struct SplatSetting {
   const Pipeline& pipeline;
   Lattice lattice;
   LucyKernel kernel;
+  std::map<Halo, Region> wanted;  ///< the leaves of every halo of the groups; empty where all leaves are wanted
+
+  /// nullptr: all.
+  const Region* wanted_leaves(const Halo& halo) const { return wanted.empty() ? nullptr : &wanted.at(halo); }
 };
 
 class FrameContext : public FrameView {
@@ -58,14 +64,16 @@ class FrameContext : public FrameView {
     const LeafBuffers* buffers = nullptr;
     int channel = 0;
   };
-  /// A group before its splat: its values, [entry][value], and what must outlive them.
+  /// A group before its splat: its values, [entry][value], and what they are splatted onto.
   struct Started {
     std::vector<double> values;
     std::unique_ptr<ContactSplat> contacts;
+    std::shared_ptr<const Topology> topology;
   };
 
   Started start(const SplatGroup& group, std::size_t bytes_per_leaf);
   void bucket_particles();
+  const std::shared_ptr<const Topology>& particle_leaves(const Halo& halo);
   std::vector<double> values_of(const SplatGroup& group) const;
   void splat(const SplatGroup& group, const Started& started, std::size_t bytes_per_leaf, WindowSums& sums);
   LeafBuffers splat_in_double(const SplatGroup& group, const Started& started) const;
@@ -73,6 +81,7 @@ class FrameContext : public FrameView {
   LeafConsumer consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology, WindowSums& sums);
   void keep(LeafBuffers buffers, const std::vector<MomentPtr>& moments, WindowSums& sums);
   void combine_voxels(const MomentPtr& moment, WindowSums& sums);
+  Outside outside() const;
   void check(std::size_t leaves, const SplatGroup& group, std::size_t bytes_per_leaf, std::size_t summed_leaves) const;
 
   std::shared_ptr<const Material> material_;
@@ -80,7 +89,7 @@ class FrameContext : public FrameView {
   const SweepGroups& groups_;
   const MomentMeans* means_ = nullptr;
   std::optional<Buckets> buckets_;
-  std::shared_ptr<const Topology> topology_;
+  std::map<const Region*, std::shared_ptr<const Topology>> topologies_;  // of the particles
   std::map<const SplatGroup*, Started> started_;
   std::vector<std::unique_ptr<LeafBuffers>> buffers_;
   std::map<std::string, Place> places_;

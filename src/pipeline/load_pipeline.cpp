@@ -129,6 +129,13 @@ class Validation {
   const Schema& schema_;
 };
 
+void check_box(const Pipeline& p, const std::string& section, const std::optional<std::pair<Vec3, Vec3>>& box) {
+  if (!box) return;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (!(box->first[a] < box->second[a]))
+      throw ConfigError({p.location(section), section + " selects nothing along " + "xyz" [a], {}, "lo < hi", {}});
+}
+
 // What no single key can tell.
 void check_together(const Pipeline& p) {
   const auto& contacts = p.input.contacts;
@@ -158,14 +165,8 @@ void check_together(const Pipeline& p) {
                        '[' + std::to_string(ids->first) + ", " + std::to_string(ids->second) + ']',
                        "the first id, then the last",
                        {}});
-  if (const auto& region = p.select.region)
-    for (int a = 0; a < 3; ++a)
-      if (!(region->first[a] < region->second[a]))
-        throw ConfigError({p.location("select.region"),
-                           std::string("select.region selects nothing along ") + "xyz" [a],
-                           {},
-                           "lo < hi",
-                           {}});
+  check_box(p, "select.region", p.select.region);
+  check_box(p, "region", p.region);
 }
 
 }  // namespace

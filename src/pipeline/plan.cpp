@@ -189,7 +189,39 @@ void check_cutoff(const Pipeline& pipeline, const Stage& stage, const Moment& mo
     for (const MomentPtr& need : *needs) check_cutoff(pipeline, stage, *need);
 }
 
+// What needs a thing comes after it.
+std::map<std::string, Halo> find_halos(const std::vector<const Stage*>& stages, const StageOrder& order,
+                                       const MomentOrder& moments) {
+  std::map<std::string, Halo> of_field;
+  std::map<std::string, Halo> of_moment;
+  const auto widen = [](Halo& halo, const Halo& by) { halo = merged(halo, by); };
+  for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {
+    const StageNeeds& needs = order.needs((*stage)->name);
+    Halo halo = of_field[(*stage)->name];
+    halo.stencil += needs.stencil;
+    for (const std::string& field : needs.fields) widen(of_field[field], halo);
+    for (const MomentPtr& moment : needs.moments) widen(of_moment[moment->name], halo);
+  }
+  for (auto entry = moments.entries().rbegin(); entry != moments.entries().rend(); ++entry) {
+    const Moment& moment = *entry->moment;
+    Halo halo = of_moment[moment.name];
+    if (moment.kind != Moment::Kind::voxels) {
+      ++halo.samplings;
+      for (std::size_t a = 0; a < 3; ++a) halo.whole_axes[a] = halo.whole_axes[a] || moment.whole_axes[a];
+    }
+    for (const auto* needs : {&moment.frame_needs, &moment.mean_needs})
+      for (const MomentPtr& need : *needs) widen(of_moment[need->name], halo);
+  }
+  return of_moment;
+}
+
 }  // namespace
+
+Halo merged(const Halo& a, const Halo& b) {
+  Halo halo{std::max(a.stencil, b.stencil), std::max(a.samplings, b.samplings), {}};
+  for (std::size_t axis = 0; axis < 3; ++axis) halo.whole_axes[axis] = a.whole_axes[axis] || b.whole_axes[axis];
+  return halo;
+}
 
 Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
   check_reach(pipeline);
@@ -217,6 +249,7 @@ Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
     if (!pipeline.select.types.empty()) sweep.columns |= Column::type;
   for (const auto& entry : moments.entries())
     if (kept.contains(entry.moment->name)) plan.means.push_back(entry.moment);
+  plan.halos = find_halos(plan.stages, stages, moments);
   for (const Stage& stage : registry.stages())
     if (std::find(plan.stages.begin(), plan.stages.end(), &stage) == plan.stages.end())
       plan.not_needed.push_back(stage.name);

@@ -59,7 +59,7 @@ Writer::Writer(const Pipeline& pipeline, const Plan& plan, FrameSource& source, 
       wanted_(select_frames(pipeline.frames, source.frames().size())),
       schedule_(schedule_windows(time_windows(pipeline), wanted_.size())) {
   if (schedule_.windows.size() == 1) return;
-  series_box_ = reach_of_boxes(lattice_, source, wanted_, pipeline.cutoff);
+  series_box_ = box_of_series(pipeline, lattice_, source, wanted_);
   check_dense_size(*series_box_, pipeline);
 }
 
@@ -78,8 +78,7 @@ void Writer::write(const OutputFields& output) {
     for (const std::string& name : pipeline_.fields)
       if (const auto it = output.fields.find(name); it != output.fields.end()) fields.push_back(&it->second);
     if (!begun_) {
-      // There is material, so that there are voxels.
-      const Topology::Bounds box = series_box_ ? *series_box_ : output.mask.topology()->bounds().value();
+      const Topology::Bounds box = series_box_ ? *series_box_ : box_of_voxels(pipeline_, *output.mask.topology());
       check_dense_size(box, pipeline_);
       for (const auto& sink : sinks_) sink->begin(layout(box, fields));
       begun_ = true;

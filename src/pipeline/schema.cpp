@@ -45,12 +45,6 @@ Vec3 vector_of(const ConfigValue& value) {
   return {v.at(0), v.at(1), v.at(2)};
 }
 
-std::pair<Vec3, Vec3>& region_of(Pipeline& pipeline) {
-  auto& region = pipeline.select.region;
-  if (!region) region.emplace();
-  return *region;
-}
-
 KeyInfo number_key(std::string section, std::string name, std::string unit, std::string help,
                    std::function<void(Pipeline&, const ConfigValue&)> apply) {
   KeyInfo key{std::move(section), std::move(name), ValueType::number, std::move(help), std::move(unit)};
@@ -76,6 +70,23 @@ KeyInfo vector_key(std::string section, std::string name, std::string help,
   key.hint = no_unit_hint;
   key.apply = std::move(apply);
   return key;
+}
+
+// The two corners of a box.
+template <class Corners>
+void add_box(Schema& schema, const std::string& section, Corners corners) {
+  const auto add = [&](const char* name, const char* help, Vec3 std::pair<Vec3, Vec3>::*corner) {
+    auto key = vector_key(section, name, help, [corners, corner](Pipeline& p, const ConfigValue& v) {
+      auto& box = corners(p);
+      if (!box) box.emplace();
+      (*box).*corner = vector_of(v);
+    });
+    key.required = true;
+    key.infinite_allowed = true;
+    schema.keys.push_back(key);
+  };
+  add("lo", "Lower corner.", &std::pair<Vec3, Vec3>::first);
+  add("hi", "Upper corner.", &std::pair<Vec3, Vec3>::second);
 }
 
 void add_input(Schema& schema) {
@@ -149,15 +160,8 @@ void add_selection(Schema& schema) {
   };
   schema.keys.push_back(ids);
   schema.sections.push_back({"select.region", "A box: lo <= x < hi along each axis; .inf leaves a side open."});
-  auto lo = vector_key("select.region", "lo", "Lower corner.",
-                       [](Pipeline& p, const ConfigValue& v) { region_of(p).first = vector_of(v); });
-  auto hi = vector_key("select.region", "hi", "Upper corner.",
-                       [](Pipeline& p, const ConfigValue& v) { region_of(p).second = vector_of(v); });
-  for (KeyInfo* corner : {&lo, &hi}) {
-    corner->required = true;
-    corner->infinite_allowed = true;
-    schema.keys.push_back(*corner);
-  }
+  add_box(
+      schema, "select.region", [](Pipeline & p) -> auto& { return p.select.region; });
 }
 
 void add_method(Schema& schema) {
@@ -180,6 +184,12 @@ void add_method(Schema& schema) {
                            [](Pipeline& p, const ConfigValue& v) { p.origin = vector_of(v); });
   origin.default_value = std::vector<double>{0, 0, 0};
   schema.keys.push_back(origin);
+
+  schema.sections.push_back({"region",
+                             "A box in which fields are wanted, the same there as without it: voxels with centres "
+                             "lo <= x < hi along each axis; .inf leaves a side open."});
+  add_box(
+      schema, "region", [](Pipeline & p) -> auto& { return p.region; });
 
   schema.sections.push_back({"kernel", "The smoothing kernel.", true});
   KeyInfo kernel{"kernel", "name", ValueType::text, "Shape of the kernel."};

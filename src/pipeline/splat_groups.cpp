@@ -23,7 +23,7 @@ void add_weights(SplatGroup& group) {
                            m->weight ? first_channel(all, m->weight->name) : -1);
 }
 
-SweepGroups::Pass group_pass(const std::vector<MomentPtr>& pass, const std::set<std::string>& kept) {
+SweepGroups::Pass group_pass(const Plan& plan, const std::vector<MomentPtr>& pass, const std::set<std::string>& kept) {
   SweepGroups::Pass result;
   for (const MomentPtr& m : pass) {
     if (m->kind == Moment::Kind::voxels) {
@@ -41,8 +41,10 @@ SweepGroups::Pass group_pass(const std::vector<MomentPtr>& pass, const std::set<
   }
   for (SplatGroup& group : result.groups) {
     group.asked_for = group.moments.size();
-    for (const MomentPtr& m : group.moments)
+    for (const MomentPtr& m : group.moments) {
       if (kept.contains(m->name)) group.kept_channels += m->channels;
+      group.halo = merged(group.halo, plan.halos.at(m->name));
+    }
     add_weights(group);
   }
   return result;
@@ -67,12 +69,16 @@ bool SplatGroup::of_frame_alone() const {
                      [](const MomentPtr& m) { return m->frame_needs.empty() && m->mean_needs.empty(); });
 }
 
-SweepGroups group_moments(const Sweep& sweep) {
+SweepGroups group_moments(const Plan& plan, std::size_t sweep) {
   SweepGroups result;
-  for (const auto& pass : sweep.passes)
+  const auto& passes = plan.sweeps[sweep].passes;
+  for (const auto& pass : passes)
     for (const MomentPtr& m : pass)
       for (const MomentPtr& need : m->frame_needs) result.kept.insert(need->name);
-  for (const auto& pass : sweep.passes) result.passes.push_back(group_pass(pass, result.kept));
+  for (const auto& pass : passes) result.passes.push_back(group_pass(plan, pass, result.kept));
+  for (const SweepGroups::Pass& pass : result.passes)
+    for (const SplatGroup& group : pass.groups)
+      if (group.kind() != Moment::Kind::contacts) result.particle_halo = merged(result.particle_halo, group.halo);
   return result;
 }
 

@@ -17,6 +17,7 @@ struct SplatGroup {
   std::size_t asked_for = 0;   ///< the first so many of the moments
   std::vector<int> weight_of;  ///< of each value: the channel that weighs it, or -1
   int kept_channels = 0;       ///< of moments that others of the frame are made of
+  Halo halo;                   ///< enough for all of them
 
   Moment::Kind kind() const { return moments[0]->kind; }
   int value_count() const { return static_cast<int>(weight_of.size()); }
@@ -33,9 +34,10 @@ struct SweepGroups {
     std::vector<MomentPtr> voxelwise;  ///< made of others after the splats
   };
   std::vector<Pass> passes;
+  Halo particle_halo;          ///< enough for all groups of particles
   std::set<std::string> kept;  ///< names of the moments that others of the same frame are made of
 };
 
-SweepGroups group_moments(const Sweep& sweep);
+SweepGroups group_moments(const Plan& plan, std::size_t sweep);
 
 }  // namespace grainvdb

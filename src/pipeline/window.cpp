@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "pipeline/wanted_leaves.hpp"
+
 namespace grainvdb {
 
 namespace {
@@ -17,10 +19,22 @@ std::size_t bytes_per_leaf(const Plan& plan, const WindowSchedule& schedule) {
 }  // namespace
 
 WindowAverager::WindowAverager(const Pipeline& pipeline, const Plan& plan, const WindowSchedule& schedule,
-                               const Lattice& lattice)
+                               const Lattice& lattice, const std::optional<Region>& region)
     : plan_(plan), schedule_(schedule), setting_(pipeline, lattice), bytes_per_leaf_(bytes_per_leaf(plan, schedule)) {
-  for (const Sweep& sweep : plan.sweeps) groups_.push_back(group_moments(sweep));
+  for (std::size_t sweep = 0; sweep < plan.sweeps.size(); ++sweep) groups_.push_back(group_moments(plan, sweep));
+  if (region)
+    for (const SweepGroups& groups : groups_) want_leaves(groups, *region);
   begin_window();
+}
+
+void WindowAverager::want_leaves(const SweepGroups& groups, const Region& region) {
+  const auto want = [&](const Halo& halo) {
+    if (!setting_.wanted.contains(halo))
+      setting_.wanted.emplace(halo, wanted_leaves(region, halo, setting_.lattice, setting_.kernel));
+  };
+  for (const SweepGroups::Pass& pass : groups.passes)
+    for (const SplatGroup& group : pass.groups) want(group.halo);
+  want(groups.particle_halo);
 }
 
 void WindowAverager::begin_window() {

@@ -12,6 +12,7 @@
 #include "grainvdb/lattice.hpp"
 #include "grainvdb/pipeline.hpp"
 #include "grainvdb/plan.hpp"
+#include "grainvdb/region.hpp"
 #include "pipeline/frame_context.hpp"
 #include "pipeline/material.hpp"
 #include "pipeline/schedule.hpp"
@@ -21,8 +22,10 @@ namespace grainvdb {
 
 class WindowAverager {
  public:
-  /// Pipeline, plan and schedule must outlive the averager.
-  WindowAverager(const Pipeline& pipeline, const Plan& plan, const WindowSchedule& schedule, const Lattice& lattice);
+  /// Pipeline, plan and schedule must outlive the averager. Moments are summed on the leaves that fields in the region
+  /// are made of; everywhere without one.
+  WindowAverager(const Pipeline& pipeline, const Plan& plan, const WindowSchedule& schedule, const Lattice& lattice,
+                 const std::optional<Region>& region);
   WindowAverager(const WindowAverager&) = delete;
   WindowAverager& operator=(const WindowAverager&) = delete;
 
@@ -42,6 +45,7 @@ class WindowAverager {
  private:
   WindowSums& destination(const Visit& visit);
   void join_parts(const Window& window);
+  void want_leaves(const SweepGroups& groups, const Region& region);
 
   const Plan& plan_;
   const WindowSchedule& schedule_;

@@ -23,10 +23,10 @@ constexpr double off_value = 4e-7;
 }  // namespace
 
 BranchSet::BranchSet(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
-                     const BranchValues& values, LineIntegral method)
+                     const BranchValues& values, LineIntegral method, const Region* wanted)
     : lattice_(lattice), kernel_(kernel), branches_(branches), values_(values), method_(method) {
   plan();
-  buckets_ = bin_points(lattice, middles(), kernel.cutoff() + longest_half_arm_);
+  buckets_ = bin_points(lattice, middles(), kernel.cutoff() + longest_half_arm_, wanted);
 }
 
 Vec3 BranchSet::half(std::size_t b) const {

@@ -25,9 +25,10 @@ struct BranchValues {
 /// takes fewer points than its halves. Whole and parted branches occur with the adaptive method only.
 class BranchSet {
  public:
-  /// `branches` and `values` must outlive the set. Throws std::invalid_argument when an arm is longer than 1e6 cutoffs.
+  /// `branches` and `values` must outlive the set. Pieces that reach no leaf that is wanted are left out of the
+  /// buckets; nullptr: none. Throws std::invalid_argument when an arm is longer than 1e6 cutoffs.
   BranchSet(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches, const BranchValues& values,
-            LineIntegral method);
+            LineIntegral method, const Region* wanted = nullptr);
 
   /// The middles of the pieces; a bucket's point is a piece.
   const Buckets& buckets() const { return buckets_; }

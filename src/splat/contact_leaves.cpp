@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "splat/bricks.hpp"
 #include "splat/gather.hpp"
+#include "splat/value_unit.hpp"
 
 namespace grainvdb {
 
@@ -47,13 +48,13 @@ void ContactLeaves::find_scales() {
       for (std::size_t c = 0; c < channels_; ++c) of_run[c] = std::max(of_run[c], std::abs(set_.value(piece[e], c)));
   });
   for (std::size_t n = 0; n < largest.size(); ++n) scale_[n % channels_] = std::max(scale_[n % channels_], largest[n]);
-  for (double& scale : scale_)
-    if (scale == 0) scale = 1;
+  for (double& scale : scale_) scale = unit_of(scale);
 }
 
-std::shared_ptr<const Topology> ContactLeaves::topology() const {
+std::shared_ptr<const Topology> ContactLeaves::topology(const Region* wanted) const {
   const double reach = (kernel_.cutoff() + set_.half_arm()) / lattice_.voxel();
   std::vector<Coord> leaves = leaves_in_reach(lattice_, set_.buckets(), reach);
+  if (wanted != nullptr) std::erase_if(leaves, [&](const Coord& leaf) { return !wanted->holds(leaf); });
   std::vector<LeafMask> masks(leaves.size());
   tbb::enumerable_thread_specific<ContactWork> work;
   parallel_for(leaves.size(), [&](std::size_t l) { masks[l] = reached(leaves[l], work.local()); });

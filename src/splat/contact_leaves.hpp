@@ -27,8 +27,8 @@ class ContactLeaves {
  public:
   ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, const BranchSet& set);
 
-  /// The voxels of the stored period within one cutoff of a branch, exactly.
-  std::shared_ptr<const Topology> topology() const;
+  /// The voxels of the stored period within one cutoff of a branch, exactly; of the leaves that are wanted, if not all.
+  std::shared_ptr<const Topology> topology(const Region* wanted) const;
 
   /// The sums by the rules of the set.
   void sums(const Topology& topology, const LeafConsumer& consume) const;
@@ -51,7 +51,7 @@ class ContactLeaves {
   const BranchSet& set_;
   std::size_t channels_;
   std::size_t stride_;
-  std::vector<double> scale_;         // largest |q| of each channel: keeps single precision in its range
+  std::vector<double> scale_;         // of each channel a power of two about its largest |q|
   Grow<float> records_;               // [entry][arm, values]: 4 (3 + channels) bytes per entry
   std::vector<std::uint8_t> points_;  // of each entry; empty when all take the same
   std::vector<BranchRule> rules_;     // by number of points

@@ -12,12 +12,12 @@ namespace grainvdb {
 
 struct ContactSplat::Parts {
   Parts(const Lattice& of, const LucyKernel& with, const HalfBranches& branches, const BranchValues& values,
-        LineIntegral line_integral)
+        LineIntegral line_integral, const Region* wanted)
       : lattice(of),
         kernel(with),
         q(values.q),
         method(line_integral),
-        set(of, with, branches, values, line_integral),
+        set(of, with, branches, values, line_integral, wanted),
         leaves(of, with, set) {}
 
   /// Every integral in double precision, in closed form.
@@ -50,13 +50,13 @@ struct ContactSplat::Parts {
 };
 
 ContactSplat::ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
-                           std::span<const double> q, int channels, LineIntegral method) {
+                           std::span<const double> q, int channels, LineIntegral method, const Region* wanted) {
   if (channels < 1 || q.size() != branches.size() * static_cast<std::size_t>(channels))
     throw std::invalid_argument("the splat needs one value per branch and channel");
   if (branches.size() == 0) return;
-  parts_ =
-      std::make_unique<Parts>(lattice, kernel, branches, BranchValues{q, static_cast<std::size_t>(channels)}, method);
-  topology_ = parts_->leaves.topology();
+  parts_ = std::make_unique<Parts>(lattice, kernel, branches, BranchValues{q, static_cast<std::size_t>(channels)},
+                                   method, wanted);
+  topology_ = parts_->leaves.topology(wanted);
 }
 
 ContactSplat::~ContactSplat() = default;

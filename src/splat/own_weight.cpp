@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -13,7 +14,6 @@
 #include "bin/buckets.hpp"
 #include "splat/candidates.hpp"
 #include "splat/leaf_finder.hpp"
-#include "splat/sample.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "splat/own_weight.cpp"
@@ -125,13 +125,14 @@ struct Work {
 class OwnWeight {
  public:
   OwnWeight(const Lattice& lattice, const LucyKernel& kernel, const Columns3& position, std::span<const double> weight,
-            const LeafBlocks& total, int channel)
+            const LeafBlocks& total, int channel, Outside outside)
       : lattice_(lattice),
         kernel_(kernel),
         position_(position),
         weight_(weight),
         total_(total),
         channel_(channel),
+        outside_(outside),
         // The voxels around a particle may lie a voxel outside the stored period.
         buckets_(bin_points(lattice, position, kernel.cutoff() + lattice.voxel())),
         largest_(weight.empty() ? 1 : *std::max_element(weight.begin(), weight.end())),
@@ -199,7 +200,10 @@ class OwnWeight {
     double own = 0;
     for (std::size_t n = 0; n < 8; ++n) {
       const Coord& v = around[n].voxel;
-      const double share = around[n].weight == 0 ? 0 : around[n].weight / total_at(v, work);
+      const double total = around[n].weight == 0 ? 1 : total_at(v, work);
+      if (outside_ == Outside::undefined && !(total > 0)) return std::numeric_limits<double>::quiet_NaN();
+      require_reached(v, total);
+      const double share = around[n].weight / total;
       double r2 = 0;
       for (int a = 0; a < 3; ++a)
         r2 += std::pow((v[a] - buckets_.index[static_cast<std::size_t>(a)][e]) * lattice_.voxel(), 2);
@@ -214,9 +218,7 @@ class OwnWeight {
   double total_at(const Coord& anywhere, Work& work) const {
     const Coord voxel = lattice_.wrap(anywhere);
     const auto leaf = work.finder.leaf(leaf_origin(voxel));
-    const double total = leaf ? total_.block(*leaf, channel_)[leaf_offset(voxel)] : 0;
-    require_reached(voxel, total);
-    return total;
+    return leaf ? total_.block(*leaf, channel_)[leaf_offset(voxel)] : 0;
   }
 
   double others(std::size_t e, const std::array<Corner, 8>& corners, Work& work) const {
@@ -236,6 +238,7 @@ class OwnWeight {
   std::span<const double> weight_;
   const LeafBlocks& total_;
   int channel_;
+  Outside outside_;
   Buckets buckets_;
   double largest_;  // weight
   double cutoff_;   // in voxels
@@ -245,8 +248,9 @@ class OwnWeight {
 }  // namespace
 
 std::vector<double> deviation_factors(const Lattice& lattice, const LucyKernel& kernel, const Columns3& position,
-                                      std::span<const double> weight, const LeafBlocks& total, int channel) {
-  const OwnWeight own(lattice, kernel, position, weight, total, channel);
+                                      std::span<const double> weight, const LeafBlocks& total, int channel,
+                                      Outside outside) {
+  const OwnWeight own(lattice, kernel, position, weight, total, channel, outside);
   std::vector<double> factors(weight.size());
   tbb::enumerable_thread_specific<Work> work([&] { return Work(*total.topology); });
   parallel_for(own.cells(), [&](std::size_t cell) { own.run(cell, work.local(), factors); });

@@ -7,6 +7,7 @@
 #include "grainvdb/kernel.hpp"
 #include "grainvdb/lattice.hpp"
 #include "grainvdb/leaf_buffers.hpp"
+#include "splat/sample.hpp"
 
 namespace grainvdb {
 
@@ -15,8 +16,9 @@ namespace grainvdb {
 /// w_αβ = Σ_n t_n weight_β W(x_n - x_β)/total(x_n) over the eight voxels n around x_α with the trilinear weights t_n;
 /// `total` is the sum of weight W over the particles, in one channel of the blocks. Exact to 1e-5: the sums over β are
 /// formed in single precision, one voxel's share in double. Images of a particle count as different ones.
-/// Throws std::logic_error where sample_trilinear does.
+/// Throws std::logic_error where sample_trilinear does, or is NaN there, as `outside` says.
 std::vector<double> deviation_factors(const Lattice& lattice, const LucyKernel& kernel, const Columns3& position,
-                                      std::span<const double> weight, const LeafBlocks& total, int channel);
+                                      std::span<const double> weight, const LeafBlocks& total, int channel,
+                                      Outside outside = Outside::refuse);
 
 }  // namespace grainvdb

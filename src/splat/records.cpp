@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.hpp"
+#include "splat/value_unit.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "splat/records.cpp"
@@ -116,7 +117,7 @@ Records::Records(const Buckets& buckets, std::span<const double> q, std::span<co
     for (std::size_t c = 0; c < channels_; ++c) scale_[c] = std::max(scale_[c], std::abs(q[n + c]));
   std::vector<double> inverse(channels_);
   for (std::size_t c = 0; c < channels_; ++c) {
-    if (scale_[c] == 0) scale_[c] = 1;
+    scale_[c] = unit_of(scale_[c]);
     inverse[c] = 1 / scale_[c];
   }
 

@@ -42,8 +42,8 @@ class RecordSource {
 
 /// Records [entry][stride] of w (q - r)/scale, where r is a reference of the entry's cell: the mean of q over the cell
 /// when every q certainly lies within half of it, else 0. So |q| is at least half the reference wherever there is one,
-/// and the rounding of w (q - r) stays small against |w q|. `scale` is the largest |w q| of a channel over the frame:
-/// units do not matter to the range of single precision.
+/// and the rounding of w (q - r) stays small against |w q|. `scale` is about the largest |w q| of a channel over the
+/// frame: units do not matter to the range of single precision.
 class Records final : public RecordSource {
  public:
   /// `q` is laid out [point][channel]; `weight_of[c]` is the channel that weighs channel c, or -1.

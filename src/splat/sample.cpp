@@ -112,6 +112,9 @@ Place place(const Lattice& lattice, int axis, double x) {
   return {static_cast<std::int32_t>(below), u - below};
 }
 
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr Vec3 undefined{nan, nan, nan};
+
 // The voxels around a position with their trilinear weights, in lexicographic order.
 Surroundings around(const std::array<Place, 3>& places) {
   Surroundings result;
@@ -127,12 +130,13 @@ Surroundings around(const std::array<Place, 3>& places) {
 
 // Σ over the surrounding voxels of their weight times their ratio. Voxels of no weight are not asked for.
 template <class Ratio>
-Vec3 interpolate(const Lattice& lattice, const std::array<Place, 3>& places, Ratio& ratio) {
+Vec3 interpolate(const Lattice& lattice, const std::array<Place, 3>& places, Outside outside, Ratio& ratio) {
   Vec3 result{};
   for (const Surrounding& s : around(places)) {
     if (s.weight == 0) continue;
     const Coord voxel = lattice.wrap(s.voxel);
     const Terms terms = ratio(voxel);
+    if (outside == Outside::undefined && !(terms.denominator > 0)) return undefined;
     require_reached(voxel, terms.denominator);
     for (int a = 0; a < 3; ++a) result[a] += s.weight * (terms.numerator[a] / terms.denominator);
   }
@@ -161,7 +165,7 @@ std::vector<Vec3> sample_trilinear(const Lattice& lattice, const RatioView& rati
       result[p] = interpolate(
           lattice,
           {place(lattice, 0, position[0][p]), place(lattice, 1, position[1][p]), place(lattice, 2, position[2][p])},
-          at_voxel);
+          ratio.outside, at_voxel);
   });
   return result;
 }
@@ -175,7 +179,7 @@ std::vector<Vec3> sample_profile(const Lattice& lattice, const RatioView& ratio,
       std::array<Place, 3> places{};
       for (int a = 0; a < 3; ++a)
         if (!homogeneous[a]) places[a] = place(lattice, a, position[a][p]);
-      result[p] = interpolate(lattice, places, profile);
+      result[p] = interpolate(lattice, places, ratio.outside, profile);
     }
   });
   return result;

@@ -20,6 +20,11 @@ Surroundings surroundings(const Lattice& lattice, const Vec3& position);
 
 /// Throws std::logic_error unless the sum of weights at a voxel that is sampled is positive.
 void require_reached(const Coord& voxel, double total);
+/// What is made of a position that is not surrounded by voxels with a positive denominator.
+enum class Outside {
+  refuse,    ///< it is a mistake: std::logic_error
+  undefined  ///< the ratio is NaN there: not all leaves were computed
+};
 
 /// A vector ratio on leaves: channels first … first+2 of `numerator` over one channel of `denominator`. Their
 /// topologies may differ.
@@ -28,11 +33,12 @@ struct RatioView {
   int first = 0;
   LeafBlocks denominator;
   int channel = 0;
+  Outside outside = Outside::refuse;
 };
 
 /// The ratio formed at the eight voxels around each position and interpolated trilinearly, with periodic wrap. Every
 /// position must be surrounded by voxels with a positive denominator (true for c > √3 h and particles that were
-/// splatted); throws std::logic_error otherwise.
+/// splatted), but as `outside` says.
 std::vector<Vec3> sample_trilinear(const Lattice& lattice, const RatioView& ratio, const Columns3& position);
 
 /// Numerator and denominator are summed over the homogeneous axes first; then the ratio is interpolated linearly along

@@ -9,13 +9,15 @@
 #include "grainvdb/kernel.hpp"
 #include "grainvdb/leaf_buffers.hpp"
 #include "grainvdb/moment.hpp"
+#include "grainvdb/region.hpp"
 #include "splat/leaf_consumer.hpp"
 
 namespace grainvdb {
 
-/// The voxels that the kernel reaches from any entry: exactly those where W > 0.
+/// The voxels that the kernel reaches from any entry: exactly those where W > 0. Of the leaves that are wanted, if not
+/// all are; the buckets must then be complete for those.
 std::shared_ptr<const Topology> particle_topology(const Lattice& lattice, const LucyKernel& kernel,
-                                                  const Buckets& buckets);
+                                                  const Buckets& buckets, const Region* wanted = nullptr);
 
 /// Σ_α q_α W(x - x_α) at every active voxel, in double precision. `q` is laid out [point][channel].
 LeafBuffers splat_particles(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
@@ -54,9 +56,10 @@ LeafBuffers splat_contacts(const Lattice& lattice, const LucyKernel& kernel, con
 /// The same in two steps, so that the sums can be handed over leaf by leaf.
 class ContactSplat {
  public:
-  /// The branches and values must outlive the splat. Throws std::invalid_argument when q has another size.
+  /// The branches and values must outlive the splat. Only leaves that are wanted are summed; nullptr: all. Throws
+  /// std::invalid_argument when q has another size.
   ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
-               std::span<const double> q, int channels, LineIntegral method);
+               std::span<const double> q, int channels, LineIntegral method, const Region* wanted = nullptr);
   ~ContactSplat();
 
   const std::shared_ptr<const Topology>& topology() const { return topology_; }

@@ -36,9 +36,10 @@ bool holds(const LeafMask& mask, const LeafMask& part) {
 }  // namespace
 
 std::shared_ptr<const Topology> particle_topology(const Lattice& lattice, const LucyKernel& kernel,
-                                                  const Buckets& buckets) {
+                                                  const Buckets& buckets, const Region* wanted) {
   const double cutoff = kernel.cutoff() / lattice.voxel();
   std::vector<Coord> leaves = leaves_in_reach(lattice, buckets, cutoff);
+  if (wanted != nullptr) std::erase_if(leaves, [&](const Coord& leaf) { return !wanted->holds(leaf); });
   std::vector<LeafMask> masks(leaves.size());
   tbb::enumerable_thread_specific<LeafWork> works;
   parallel_for(leaves.size(), [&](std::size_t l) {
