@@ -63,7 +63,9 @@ Pipeline everything(const std::string& temperature) {
   p.voxel = 0.2e-3;
   p.cutoff = 0.8e-3;
   set_option(p, "temperature", "mode", std::string(temperature));
-  set_option(p, "temperature", "self_weight", std::string("corrected"));
+  // Means over whole planes hardly follow one particle: there is nothing to correct.
+  const bool profile = temperature == "two_pass_profile";
+  set_option(p, "temperature", "self_weight", std::string(profile ? "none" : "corrected"));
   return p;
 }
 
@@ -112,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"across", {-1e-3, 5.8e-3, -2e-3}, {0.5e-3, 7e-3, -1e-3}, "two_pass"},
                       Case{"across_profile", {-1e-3, 5.8e-3, -2e-3}, {0.5e-3, 7e-3, -1e-3}, "two_pass_profile"},
                       Case{"above", {-inf, -inf, 7e-3}, {inf, inf, inf}, "one_pass_corrected"}),
-    [](const auto& info) { return std::string(info.param.name); });
+    [](const auto& choice) { return std::string(choice.param.name); });
 
 TEST(Region, OfLeavesHasTheFieldsOfTheWhole) {
   const Pipeline p = everything("two_pass");
