@@ -14,6 +14,7 @@ void add_validate(CLI::App& app);
 void add_stages(CLI::App& app);
 void add_graph(CLI::App& app);
 void add_schema(CLI::App& app);
+void add_spot(CLI::App& app);
 void add_report(CLI::App& app);
 
 /// The argument PIPELINE and the option --set, as several subcommands take them.

@@ -86,6 +86,7 @@ int run(int argc, char** argv) {
   add_stages(app);
   add_graph(app);
   add_schema(app);
+  add_spot(app);
   add_report(app);
   try {
     app.parse(argc, argv);

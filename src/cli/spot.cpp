@@ -1,0 +1,72 @@
+#include <iostream>
+#include <memory>
+
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/output_folder.hpp"
+#include "cli/progress_line.hpp"
+#include "spot/run_spot.hpp"
+
+namespace grainvdb::cli {
+namespace {
+
+constexpr const char* run_footer = R"(Examples:
+  grainvdb spot run pipelines/spot_silo.yaml --output spot
+  grainvdb spot run pipelines/spot_silo.yaml --set relaxation.every=0 --set seed=2 -o unrelaxed
+  grainvdb info spot
+
+The dumps are read by every other command. Each appears under its name when it is complete; Ctrl-C leaves those that are
+done. The same file and seed give the same dumps.)";
+
+struct RunOptions {
+  PipelineArguments file;
+  std::string output = "spot";
+  bool quiet = false;
+};
+
+void print(const spot::SpotRun& run, const spot::SpotReport& report, const std::string& folder) {
+  const spot::SpotCounters& c = report.counters;
+  std::cout << report.snapshots << " snapshots until time " << report.time << " in " << folder << '\n';
+  std::cout << "particles: " << report.particles_at_start << " at the start, " << report.drained << " drained, "
+            << report.particles_at_end << " left";
+  if (run.left_out > 0) std::cout << " (" << run.left_out << " of the dump lie outside the container)";
+  std::cout << "\nspots: " << c.inserted + run.parameters.count << " entered, " << c.removed << " left, " << c.steps
+            << " steps, " << c.relaxed << " of them relaxed\n";
+}
+
+void run(const RunOptions& options) {
+  const spot::SpotRun run = spot::load_spot_run(options.file.file, options.file.overrides);
+  check_output_folder(options.output);
+  watch_for_interrupts();
+  spot::SpotReport report;
+  {
+    ProgressLine line(stderr);
+    report = spot::run_spot(run, options.output, [&](std::size_t done, std::size_t all) {
+      check_for_interrupt();
+      if (!options.quiet) line.show({done, all, "snapshots"});
+    });
+  }
+  if (!options.quiet) print(run, report, options.output);
+}
+
+void add_run_subcommand(CLI::App& spot) {
+  CLI::App* command = spot.add_subcommand("run", "Run the spot model and write dumps");
+  const auto options = std::make_shared<RunOptions>();
+  add_pipeline_arguments(*command, options->file);
+  command->add_option("-o,--output", options->output, "Folder for the dumps; made where there is none")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
+  command->footer(run_footer);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace
+
+void add_spot(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("spot", "Make snapshots with the spot model");
+  command->require_subcommand(1);
+  add_run_subcommand(*command);
+}
+
+}  // namespace grainvdb::cli
