@@ -108,18 +108,17 @@ class Fields:
         is not there.
         """
         data = self._dataset(name)
-        series = self._is_series(data)
         if time is None:
             return data[...]
         if not -len(self.times) <= time < len(self.times):
             raise IndexError(f"{self.path}: no output time {time}; there are {len(self.times)}")
-        return data[time] if series else data[...]
+        return data[time] if self._is_series else data[...]
 
     def __getitem__(self, name: str) -> xarray.DataArray:
         import xarray
 
         data = self._dataset(name)
-        dims: list[str] = (["time"] if self._is_series(data) else []) + ["z", "y", "x"]
+        dims: list[str] = (["time"] if self._is_series else []) + ["z", "y", "x"]
         coords: dict[str, object] = {axis: (axis, self.axis(axis), {"units": self.unit(axis)}) for axis in AXES}
         if "time" in dims:
             coords["time"] = ("time", self.times, {"units": self.unit("time")})
@@ -151,7 +150,7 @@ class Fields:
         if "mask" not in self._data:
             return np.zeros(self.values(self.names[0], time).shape[:3], np.uint32)
         data = self._data["mask"]
-        return data[time] if time is not None and self._is_series(data) else data[...]
+        return data[time] if time is not None and self._is_series else data[...]
 
     def undefined(self, name: str, time: int = -1) -> dict[str, int]:
         """How many voxels with material near them have no value of a field, by the reasons of those voxels."""
@@ -161,9 +160,10 @@ class Fields:
         counts = {r.name: int(np.count_nonzero(flags & r.flag)) for r in self.reasons if r.name != "outside"}
         return {reason: count for reason, count in counts.items() if count}
 
-    def _is_series(self, data: h5py.Dataset) -> bool:
-        spatial = tuple(len(self._file[axis]) for axis in reversed(AXES))
-        return data.shape[:3] != spatial or (len(self.times) > 1 and data.shape[1:4] == spatial)
+    @property
+    def _is_series(self) -> bool:
+        """Whether there is an axis of time: one output time has none."""
+        return len(self.times) > 1
 
     def _dataset(self, name: str) -> h5py.Dataset:
         if name not in self._data:

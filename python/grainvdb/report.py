@@ -69,10 +69,17 @@ class _Page:
                 f"<body><h1>{html.escape(self.title)}</h1>\n<nav>{links}</nav>\n{body}\n</body></html>\n")
 
 
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
 def _table(rows: list[tuple[str, ...]], head: tuple[str, ...] = ()) -> str:
     def cell(tag: str, value: str) -> str:
-        number = tag == "td" and value.replace(",", "").replace(".", "").replace("-", "").replace("e", "").replace("+", "").isdigit()
-        return f'<{tag}{" class=n" if number else ""}>{html.escape(value)}</{tag}>'
+        return f'<{tag}{" class=n" if tag == "td" and _is_number(value) else ""}>{html.escape(value)}</{tag}>'
 
     lines = ["<tr>" + "".join(cell("th", v) for v in head) + "</tr>"] if head else []
     lines += ["<tr>" + "".join(cell("td", v) for v in row) + "</tr>" for row in rows]

@@ -68,11 +68,10 @@ class Tracers:
     def positions(self, unwrapped: bool = True) -> np.ndarray:
         """Of shape (sample, tracer, 3) [length]; unwrapped across periodic sides unless that is not wanted."""
         position = self._values("position")[...]
-        if not unwrapped or "image" not in self._group:
+        if not unwrapped:
             return position
-        edges = np.asarray(self._group["box/edges/value"][...] if "value" in self._group["box/edges"] else self._group["box/edges"][...])
-        edges = edges.reshape(len(edges), 1, 3) if edges.ndim > 1 and len(edges) == len(position) else edges.reshape(-1, 3)[:1]
-        return position + self._values("image")[...] * edges
+        edges = self._group["box/edges/value"][...]  # of every sample, one vector a row
+        return position + self._values("image")[...] @ edges
 
     @property
     def stop(self) -> np.ndarray:

@@ -49,7 +49,7 @@ class Report(unittest.TestCase):
         shutil.copy(result() / "fields.hdf", self.folder)
 
     def test_page_holds_everything(self):
-        write_tracers(self.folder / "tracers.h5")
+        write_tracers(self.folder)
         done = report(self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         page = _Page((self.folder / "report/report.html").read_text())

@@ -21,8 +21,8 @@ struct TracerScene {
     for (std::size_t i = 0; i < tracers; ++i) l.id.push_back(10 + 7 * static_cast<std::int64_t>(i));
     l.box = {{-1, 0, 0.5}, {3, 0.1, 10.5}, {true, false, true}};
     l.fields = fields;
-    l.length_unit = "m";
-    l.time_unit = "s";
+    l.length_unit = std::string("m");
+    l.time_unit = std::string("s");
     l.unit_system = "si";
     return l;
   }
