@@ -10,6 +10,7 @@ namespace grainvdb::cli {
 
 void add_run(CLI::App& app);
 void add_info(CLI::App& app);
+void add_init(CLI::App& app);
 void add_validate(CLI::App& app);
 void add_stages(CLI::App& app);
 void add_graph(CLI::App& app);

@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include "cli/commands.hpp"
+#include "cli/survey.hpp"
 #include "grainvdb/frame_source.hpp"
+#include "pipeline/number.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -14,7 +16,10 @@ namespace {
 constexpr const char* footer = R"(Examples:
   grainvdb info dumps/
   grainvdb info 'dumps/dump*.liggghts' --contacts 'dumps/contacts*.liggghts'
-  grainvdb info run.dump.gz --list)";
+  grainvdb info run.dump.gz --list
+
+Headers are read of every frame, grains of the last one. A type flows unless all its grains rest or have one velocity,
+as those of walls do; the suggestion is for the grains that flow. `grainvdb init` makes a pipeline file of it.)";
 
 struct Options {
   InputSpec input;
@@ -79,6 +84,33 @@ void print_columns(const char* what, const std::vector<std::string>& columns) {
   std::cout << " (" << columns.size() << ")\n";
 }
 
+void print_grains(const Survey& survey) {
+  std::cout << "grains of the last frame:\n";
+  for (const Kind& kind : survey.kinds) {
+    std::cout << "  ";
+    if (survey.has_types) std::cout << "type " << kind.type << ": ";
+    std::cout << kind.count;
+    if (survey.has_sizes) {
+      std::cout << ", diameter " << short_number(kind.mean);
+      if (kind.least != kind.greatest)
+        std::cout << " (" << short_number(kind.least) << " ... " << short_number(kind.greatest) << ')';
+    }
+    if (kind.motion != Motion::unknown) std::cout << ", " << name_of(kind.motion);
+    std::cout << '\n';
+  }
+  if (survey.contacts) std::cout << "contacts of the last frame: " << *survey.contacts << '\n';
+}
+
+void print_suggestion(const Survey& survey, const Box& box) {
+  if (!survey.has_sizes) return;
+  const double d = survey.mean_diameter();
+  const std::optional<double> voxel = suggested_voxel(d, box);
+  std::cout << "suggested: kernel.cutoff " << print_number(suggested_cutoff(d, box)) << " ("
+            << short_number(suggested_cutoff(d, box) / d) << " mean diameters), lattice.voxel "
+            << (voxel ? print_number(*voxel) : "none (no voxel near half a diameter fits all periodic lengths)")
+            << '\n';
+}
+
 void info(const Options& options) {
   const auto source = open_dumps(options.input);
   print_frames(source->frames(), options.list);
@@ -86,6 +118,9 @@ void info(const Options& options) {
   const std::vector<std::string> contact_columns = source->contact_columns();
   if (!contact_columns.empty()) print_columns("contact columns", contact_columns);
   std::cout << "units: " << source->units().name << '\n';
+  const Survey last = survey(*source, source->frames().size() - 1);
+  print_grains(last);
+  print_suggestion(last, source->frames().back().box);
   const auto files = source->files();
   const std::uintmax_t bytes = std::accumulate(files.begin(), files.end(), std::uintmax_t{0},
                                                [](std::uintmax_t sum, const auto& file) { return sum + file.second; });

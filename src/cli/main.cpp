@@ -17,6 +17,7 @@ enum ExitCode { bad_usage = 1, io_failed = 3, limit_refused = 4, unexpected = 5 
 
 constexpr const char* footer = R"(Examples:
   grainvdb info dumps/
+  grainvdb init dumps/ --output my.yaml
   grainvdb validate pipelines/shear_cell.yaml
   grainvdb run pipelines/shear_cell.yaml --output result
   grainvdb run pipelines/shear_cell.yaml --set kernel.cutoff=3e-3 --frames ::2
@@ -82,6 +83,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   add_run(app);
   add_info(app);
+  add_init(app);
   add_validate(app);
   add_stages(app);
   add_graph(app);

@@ -66,6 +66,7 @@ void add_run_subcommand(CLI::App& spot) {
 void add_spot(CLI::App& app) {
   CLI::App* command = app.add_subcommand("spot", "Make snapshots with the spot model");
   command->require_subcommand(1);
+  command->footer("Examples:\n  grainvdb spot run pipelines/spot_silo.yaml --output spot");
   add_run_subcommand(*command);
 }
 

@@ -18,7 +18,7 @@ CommandResult grainvdb(const std::vector<std::string>& arguments) {
 }
 
 TEST(Usage, EveryCommandHasHelpWithExamples) {
-  for (const char* command : {"run", "info", "validate", "stages", "graph", "schema", "report"}) {
+  for (const char* command : {"run", "info", "init", "validate", "stages", "graph", "schema", "spot", "report"}) {
     const CommandResult result = grainvdb({command, "--help"});
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_THAT(result.out, AllOf(HasSubstr("Examples:\n  grainvdb " + std::string(command)), HasSubstr("--help")));
@@ -29,8 +29,8 @@ TEST(Usage, EveryCommandHasHelpWithExamples) {
 TEST(Usage, HelpDocumentsCommandsAndExitCodes) {
   const CommandResult result = grainvdb({"--help"});
   EXPECT_EQ(result.exit_code, 0);
-  for (const char* word : {"run", "info", "validate", "stages", "graph", "schema", "report", "Exit codes:", "  0 ", "  1 ",
-                           "  2 ", "  3 ", "  4 ", "  5 ", "  130 "})
+  for (const char* word : {"run", "info", "init", "validate", "stages", "graph", "schema", "spot", "report",
+                           "Exit codes:", "  0 ", "  1 ", "  2 ", "  3 ", "  4 ", "  5 ", "  130 "})
     EXPECT_THAT(result.out, HasSubstr(word));
 }
 

@@ -1,0 +1,154 @@
+#include "cli/draft.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "pipeline/number.hpp"
+
+namespace grainvdb::cli {
+namespace {
+
+struct FieldNote {
+  const char* name;
+  const char* note;
+};
+constexpr FieldNote notes[] = {
+    {"phi", "packing fraction"},
+    {"velocity", "volume-weighted mean velocity"},
+    {"mean_diameter", "volume-weighted"},
+    {"temperature", "granular temperature, the sum over the three components"},
+    {"shear_rate", "second invariant of the rate of strain"},
+    {"stress", "contact and kinetic stress, tension positive"},
+    {"pressure", "-tr(stress)/3, positive in compression"},
+    {"shear_stress", "magnitude of the deviator"},
+    {"mu", "shear_stress/pressure"},
+    {"inertial_number", "shear_rate d √(ρ/pressure)"},
+    {"fluidity", "g = shear_rate/mu"},
+    {"gd_over_dv", "g d/δv"},
+};
+
+// In double quotes, as YAML reads any text.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
+std::string list(const std::vector<std::string>& texts) {
+  if (texts.size() == 1) return quoted(texts.front());
+  std::string result;
+  for (const std::string& text : texts) result += (result.empty() ? "[" : ", ") + quoted(text);
+  return result + ']';
+}
+
+std::string types_text(const std::vector<int>& types) {
+  std::string result;
+  for (const int type : types) result += (result.empty() ? "[" : ", ") + std::to_string(type);
+  return result + ']';
+}
+
+void write_contacts(std::ostream& out, const Draft& draft) {
+  const ContactSpec& contacts = draft.input.contacts;
+  if (contacts.files.empty()) {
+    out << "  # contacts:          # only stresses and what follows from them need these\n"
+           "  #   files: contacts*\n";
+    return;
+  }
+  if (draft.contacts_known) {
+    out << "  contacts:            # only stresses and what follows from them need these\n    files: "
+        << list(contacts.files) << '\n';
+    if (!contacts.compute.empty()) out << "    compute: " << list(contacts.compute) << '\n';
+    return;
+  }
+  out << "  # The columns of the contact dumps do not say what they hold:\n  #  ";
+  for (const std::string& column : draft.contact_columns) out << ' ' << column;
+  out << "\n"
+         "  # Name them, or give the keywords of the `compute pair/gran/local` that made them (LIGGGHTS), and ask for "
+         "the\n"
+         "  # fields below that need contacts.\n"
+         "  # contacts:\n"
+         "  #   files: "
+      << list(contacts.files)
+      << "\n"
+         "  #   compute: [pos, id, force, contactPoint, delta]\n"
+         "  #   columns: {id1: ..., id2: ..., force: [..., ..., ...], point: [..., ..., ...]}\n";
+}
+
+void write_input(std::ostream& out, const Draft& draft) {
+  const InputSpec& input = draft.input;
+  out << "input:\n  particles: " << list(input.particles) << "   # relative to this file\n";
+  if (input.units)
+    out << "  units: " << *input.units << '\n';
+  else if (!draft.units_known)
+    out << "  # units: si          # or cgs, lj, micro, nano: the dumps do not name theirs\n";
+  if (input.dt)
+    out << "  dt: " << print_number(*input.dt) << "           # time per step\n";
+  else if (!draft.times_known)
+    out << "  # dt: 1.0e-6         # time per step: the dumps have no times\n";
+  if (input.density) out << "  density: " << print_number(*input.density) << '\n';
+  if (input.radius) out << "  radius: " << print_number(*input.radius) << '\n';
+  write_contacts(out, draft);
+}
+
+void write_selection(std::ostream& out, const Survey& survey) {
+  if (!survey.has_types) return;
+  out << "\n# Which grains count as material. In the last frame:\n";
+  for (const Kind& kind : survey.kinds)
+    out << "#   type " << kind.type << ": " << kind.count << ' ' << name_of(kind.motion) << '\n';
+  out << "select:\n  types: " << types_text(survey.material()) << '\n';
+}
+
+void write_fields(std::ostream& out, const Draft& draft) {
+  out << "\n# `grainvdb stages` lists all fields, with equations and options.\noutput:\n  fields:\n";
+  for (const auto& [name, note] : notes) {
+    const bool wanted = std::find(draft.fields.begin(), draft.fields.end(), name) != draft.fields.end();
+    const auto refusal = draft.refused.find(name);
+    out << (wanted ? "    - " : "    # - ") << name << std::string(18 - std::string(name).size(), ' ') << "# " << note;
+    if (refusal != draft.refused.end()) out << "; " << refusal->second;
+    out << '\n';
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& common_fields() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const FieldNote& f : notes) all.emplace_back(f.name);
+    return all;
+  }();
+  return names;
+}
+
+std::string pipeline_text(const Draft& draft) {
+  const double d = draft.survey.mean_diameter();
+  const double cutoff = suggested_cutoff(d, draft.box);
+  std::ostringstream out;
+  out << "# Continuum fields of grains of mean diameter " << short_number(d)
+      << ". Every number is in the unit system of the dumps.\n"
+         "#   grainvdb graph "
+      << draft.command
+      << "               shows what would be computed, and from what\n"
+         "#   grainvdb run "
+      << draft.command << " --output out    computes it\ngrainvdb: 1\n\n";
+  write_input(out, draft);
+  write_selection(out, draft.survey);
+  out << "\nframes: \"::\"           # all; a Python slice first:end:step\n"
+         "\n# Cubic voxels of about half a diameter. Periodic lengths must be a whole number of voxels.\n"
+         "lattice:\n  voxel: "
+      << print_number(draft.voxel)
+      << "\n"
+         "\n# Each grain is smeared over a sphere of this radius: "
+      << short_number(cutoff / d) << " mean diameters.\nkernel:\n  cutoff: " << print_number(cutoff)
+      << "\n"
+         "\n# One mean over all frames. A number gives a series of means over so many frames, `none` each frame by "
+         "itself.\n"
+         "average:\n  window: all\n";
+  write_fields(out, draft);
+  return out.str();
+}
+
+}  // namespace grainvdb::cli

@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <utility>
+
+#include "cli/commands.hpp"
+#include "cli/draft.hpp"
+#include "grainvdb/plan.hpp"
+#include "grainvdb/run.hpp"
+
+namespace grainvdb::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* footer = R"(Examples:
+  grainvdb init dumps/
+  grainvdb init 'post/dump*.liggghts' --contacts 'post/contacts*.liggghts' --contact-compute pos id force contactPoint delta \
+      --units si --dt 1e-6 --output shear.yaml
+  grainvdb init run.dump.gz --density 2500 --output run.yaml
+
+The file names the grains that flow as material, a kernel of three mean diameters, voxels of half a diameter that fit the
+periodic box, and the common fields for which the dumps have what they need. It is checked as `grainvdb validate` does.)";
+
+struct Options {
+  InputSpec input;
+  std::string file = "pipeline.yaml";
+};
+
+// Patterns as they must stand in a file of that folder.
+std::vector<std::string> relative_to(const fs::path& folder, const std::vector<std::string>& patterns) {
+  std::vector<std::string> result;
+  for (const std::string& pattern : patterns) {
+    const fs::path path(pattern);
+    result.push_back(path.is_absolute() ? pattern
+                                        : fs::absolute(path).lexically_normal().lexically_relative(folder).string());
+  }
+  return result;
+}
+
+void write(const fs::path& path, const std::string& text) {
+  errno = 0;
+  std::ofstream out(path, std::ios::binary);
+  if (!(out << text << std::flush)) throw IoError("cannot write", path.string(), errno);
+}
+
+bool contacts_can_be_read(FrameSource& source) {
+  try {
+    source.require(0, Column::contacts);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+void refuse_to_replace(const std::string& file) {
+  if (fs::exists(file))
+    throw ConfigError({{file, 0},
+                       "the file is there already",
+                       {},
+                       "the name of a new file",
+                       "Give another one with --output, or remove it"});
+}
+
+double voxel_for(const Survey& survey, const Box& box, const std::string& file) {
+  if (!survey.has_sizes)
+    throw InputError({{file, 0},
+                      "the dump has no sizes of the grains",
+                      {},
+                      "a column radius or diameter",
+                      "Give the radius of all grains with --radius"});
+  const std::optional<double> voxel = suggested_voxel(survey.mean_diameter(), box);
+  if (!voxel)
+    throw InputError({{file, 0},
+                      "no cubic voxel between a quarter and 0.6 of a diameter fits all periodic lengths of the box",
+                      {},
+                      {},
+                      "Write the pipeline file by hand, with a voxel that divides them"});
+  return *voxel;
+}
+
+bool needs_contacts(const Plan& plan) {
+  return std::any_of(plan.sweeps.begin(), plan.sweeps.end(),
+                     [](const Sweep& sweep) { return sweep.columns.has(Column::contacts); });
+}
+
+// "file:line: what; …" without the place, which is that of the trial, in one line.
+std::string reason(const std::string& message) {
+  const std::string line = message.substr(0, message.find('\n'));
+  const std::size_t place = line.find(": ");
+  return place == std::string::npos ? line : line.substr(place + 2);
+}
+
+// Sorts the common fields into those that a pipeline file could ask for and those that it could not.
+void sort_fields(Draft& draft, const fs::path& file, FrameSource& source) {
+  draft.fields.clear();
+  for (const std::string& field : common_fields()) {
+    const Pipeline pipeline = load_pipeline(file.string(), {"output.fields=[" + field + "]"});
+    const Plan plan = make_plan(pipeline);
+    if (needs_contacts(plan) && !draft.contacts_known) {
+      draft.refused[field] = "needs contacts";
+      continue;
+    }
+    try {
+      check_against_input(pipeline, plan, source);
+      draft.fields.push_back(field);
+    } catch (const InputError& refusal) {
+      draft.refused[field] = reason(refusal.what());
+    }
+  }
+}
+
+void init(const Options& options) {
+  refuse_to_replace(options.file);
+  const auto source = open_dumps(options.input);
+  const FrameInfo& last = source->frames().back();
+  const fs::path file = fs::absolute(options.file).lexically_normal();
+
+  Draft draft;
+  draft.input = options.input;
+  draft.input.particles = relative_to(file.parent_path(), options.input.particles);
+  draft.input.contacts.files = relative_to(file.parent_path(), options.input.contacts.files);
+  draft.command = options.file;
+  draft.contact_columns = source->contact_columns();
+  draft.contacts_known = !draft.contact_columns.empty() && contacts_can_be_read(*source);
+  draft.times_known = last.time.has_value();
+  draft.units_known = source->units().name != "unspecified";
+  draft.survey = survey(*source, source->frames().size() - 1);
+  draft.box = last.box;
+  draft.voxel = voxel_for(draft.survey, last.box, last.file);
+
+  // Beside the file that it becomes, so that its paths mean the same.
+  fs::path trial = file;
+  trial += ".part";
+  try {
+    draft.fields = common_fields();
+    write(trial, pipeline_text(draft));
+    sort_fields(draft, trial, *source);
+    write(trial, pipeline_text(draft));
+    const Pipeline made = load_pipeline(trial.string());
+    check_against_input(made, make_plan(made), *source);
+    fs::rename(trial, file);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(trial, ignored);
+    throw;
+  }
+  std::cout << "wrote " << options.file << " with " << draft.fields.size() << " fields\n";
+  if (!draft.contact_columns.empty() && !draft.contacts_known)
+    std::cout
+        << "The columns of the contact dumps are not known: see input.contacts there, or give --contact-compute.\n";
+}
+
+}  // namespace
+
+void add_init(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("init", "Write a pipeline file that fits dump files");
+  const auto options = std::make_shared<Options>();
+  InputSpec& input = options->input;
+  command->add_option("dumps", input.particles, "Particle dumps: files, folders or patterns")
+      ->required()
+      ->type_name("DUMPS");
+  command->add_option("--contacts", input.contacts.files, "Contact dumps: files, folders or patterns")
+      ->type_name("DUMPS");
+  command
+      ->add_option("--contact-compute", input.contacts.compute,
+                   "Keywords of the LIGGGHTS `compute pair/gran/local` that made them")
+      ->type_name("KEYWORDS");
+  command->add_option("--units", input.units, "Unit system, where the dumps name none")->type_name("NAME");
+  command->add_option("--dt", input.dt, "Time per step, for dumps without times")
+      ->type_name("TIME")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--density", input.density, "Density of the grains, for dumps without mass")
+      ->type_name("DENSITY")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--radius", input.radius, "Radius of all grains, for dumps without sizes")
+      ->type_name("LENGTH")
+      ->check(CLI::PositiveNumber);
+  command->add_option("-o,--output", options->file, "The pipeline file to write")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command->footer(footer);
+  command->callback([options] { init(*options); });
+}
+
+}  // namespace grainvdb::cli
