@@ -15,6 +15,8 @@ install(DIRECTORY include/grainvdb ${PROJECT_BINARY_DIR}/include/grainvdb
 file(RELATIVE_PATH GRAINVDB_LIB_FROM_BIN ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR})
 set_target_properties(grainvdb_cli PROPERTIES INSTALL_RPATH "$ORIGIN/${GRAINVDB_LIB_FROM_BIN}")
 install(TARGETS grainvdb_cli)
+install(FILES ${PROJECT_BINARY_DIR}/share/grainvdb.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${PROJECT_BINARY_DIR}/share/grainvdb DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
 
 install(EXPORT grainvdbTargets NAMESPACE grainvdb:: DESTINATION ${GRAINVDB_PACKAGE_DIR})
 get_target_property(GRAINVDB_LIBRARY_TYPE grainvdb TYPE)

@@ -17,6 +17,8 @@ void add_graph(CLI::App& app);
 void add_schema(CLI::App& app);
 void add_spot(CLI::App& app);
 void add_report(CLI::App& app);
+void add_completion(CLI::App& app);
+void add_man(CLI::App& app);
 
 /// The argument PIPELINE and the option --set, as several subcommands take them.
 struct PipelineArguments {

@@ -90,6 +90,8 @@ int run(int argc, char** argv) {
   add_schema(app);
   add_spot(app);
   add_report(app);
+  add_completion(app);
+  add_man(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help and --version

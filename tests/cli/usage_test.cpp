@@ -1,4 +1,8 @@
 /// Help, version, and what the command says about itself.
+#include <cstdlib>
+#include <regex>
+#include <sstream>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -61,6 +65,43 @@ TEST(Usage, BadCommandLinesExitWithOne) {
   const CommandResult extra = grainvdb({"graph", "a.yaml", "b.yaml"});
   EXPECT_EQ(extra.exit_code, 1);
   EXPECT_THAT(extra.err, StartsWith("grainvdb: unexpected argument 'b.yaml'\n"));
+}
+
+TEST(Usage, TheManualPageHasEveryCommandAndOption) {
+  const CommandResult result = grainvdb({"man"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.out, AllOf(StartsWith(".TH GRAINVDB 1"), HasSubstr(".SS grainvdb spot run\n"),
+                                HasSubstr("\\fB\\-o,\\-\\-output\\fR \\fIDIR\\fR"), HasSubstr("Exit codes:")));
+  for (const char* command : {"run", "info", "init", "validate", "stages", "graph", "schema", "spot", "report"})
+    EXPECT_THAT(result.out, HasSubstr(".SS grainvdb " + std::string(command) + '\n'));
+  // A line of text that began with a dot would be a request.
+  std::istringstream lines(result.out);
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_TRUE(!line.starts_with('.') || std::regex_match(line, std::regex("\\.(TH|SH|SS|TP|PP|nf|fi)( .*)?")))
+        << line;
+}
+
+// What bash offers when the words are typed and the last one is to be completed.
+std::string completed(const std::string& words) {
+  const Folder folder;
+  folder.write("my pipeline.yaml", "");
+  const CommandResult script = run_command({"completion"}, folder.path());
+  folder.write("complete.sh", script.out + "COMP_WORDS=(" + words +
+                                  ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_grainvdb\n"
+                                  "printf '%s\\n' \"${COMPREPLY[@]}\"\n");
+  const std::string out = folder / "out.txt";
+  const std::string shell = "cd '" + folder.path().string() + "' && bash complete.sh > out.txt";
+  EXPECT_EQ(std::system(shell.c_str()), 0);
+  return read_file(out);
+}
+
+TEST(Usage, BashCompletesCommandsOptionsAndFiles) {
+  EXPECT_EQ(completed("grainvdb inf"), "info\n");
+  EXPECT_EQ(completed("grainvdb run --th"), "--threads\n");
+  EXPECT_EQ(completed("grainvdb run my"), "my pipeline.yaml\n");
+  EXPECT_EQ(completed("grainvdb spot ru"), "run\n");
+  EXPECT_EQ(completed("grainvdb spot run --qu"), "--quiet\n");
+  EXPECT_EQ(completed("grainvdb run run --dt"), "\n");
 }
 
 TEST(Usage, ThreadsMustBeAPositiveNumber) {
