@@ -29,7 +29,7 @@ struct OutputTime {
   double time = 0;  ///< mean time of the frames [time_unit]
   std::int64_t first_step = 0;
   std::int64_t last_step = 0;
-  std::size_t frame_count = 1;
+  std::size_t frame_count = 1;  ///< 0 where every frame was bad; time and steps are then those of these frames
 };
 
 /// Named texts that say where a result comes from: version, resolved pipeline, inputs, what was computed, …

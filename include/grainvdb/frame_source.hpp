@@ -25,6 +25,12 @@ struct ContactSpec {
   std::map<std::string, std::vector<std::string>> columns;
 };
 
+/// What becomes of a frame that is malformed or lacks what is needed of it.
+enum class OnError {
+  error,      ///< it is an InputError
+  skip_frame  ///< it is left out, and recorded
+};
+
 /// What the pipeline file says about the input. The places serve error messages.
 struct InputSpec {
   std::vector<std::string> particles;  ///< paths, directories or globs of particle dumps
@@ -33,6 +39,7 @@ struct InputSpec {
   std::optional<std::string> units;  ///< unit system, for dumps without ITEM: UNITS; must agree where both are given
   std::optional<double> density;     ///< of the grains, for dumps without mass: m = ρ 4/3 π r³ [mass/length³]
   std::optional<double> radius;      ///< of all grains, for dumps without radius and diameter [length]
+  OnError on_error = OnError::error;
   std::map<std::string, Location> where;  ///< where each key stands in the pipeline file, e.g. "input.dt"
 };
 
@@ -45,6 +52,16 @@ struct FrameInfo {
   std::size_t particle_count = 0;
   Box box;
 };
+
+/// What is left out of the input, and why.
+struct BadFrame {
+  std::string file;
+  std::optional<std::int64_t> step;  ///< nothing where not even that can be read: the rest of the file
+  std::string reason;
+};
+
+/// "step 300: reason"; the reason alone, which names the file, where the step is not known.
+std::string to_string(const BadFrame& frame);
 
 /// What was done so far; shows that nothing unneeded was read.
 struct ReadCounters {
@@ -76,12 +93,16 @@ class FrameSource {
   /// Reads frame k of the index: id, position and the wanted columns. Throws InputError or IoError.
   virtual Frame read(std::size_t k, ColumnSet wanted) = 0;
 
+  /// Where the index ends before the end of a file, because of a fault that OnError::skip_frame passes over.
+  virtual std::vector<BadFrame> unreadable() const { return {}; }
+
   virtual const ReadCounters& counters() const = 0;
 };
 
 /// Finds the files, recognises their format and indexes the frames. Reads headers only where a file holds one frame.
 /// Throws InputError (no frames, malformed headers, a step twice, units in conflict or unknown), IoError, or
-/// ConfigError when the specification itself cannot be meant.
+/// ConfigError when the specification itself cannot be meant. With OnError::skip_frame files that are not recognised
+/// and frames without a proper header are left out of the index, with what follows them in their file.
 std::unique_ptr<FrameSource> open_dumps(const InputSpec& spec);
 
 }  // namespace grainvdb

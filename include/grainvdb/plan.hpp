@@ -35,6 +35,9 @@ struct Plan {
   std::vector<std::string> not_needed;  ///< stages of the registry that this plan does not run
 };
 
+/// What is read of a frame in any of the sweeps.
+ColumnSet all_columns(const Plan& plan);
+
 /// Throws ConfigError for an unknown field (with "did you mean"), for a cycle among stages (naming it), and for a
 /// kernel that could miss every voxel centre (c < √3/2 h) or is too narrow for a moment that interpolates to particles
 /// (c < √3 h). Throws LimitError for voxels so coarse that the volume of a grain errs by more than limits.volume_error.

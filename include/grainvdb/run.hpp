@@ -26,7 +26,7 @@ struct Progress {
 };
 
 struct RunReport {
-  std::size_t frames = 0;         ///< read at least once
+  std::size_t frames = 0;         ///< that are in an average
   std::size_t active_voxels = 0;  ///< of the last output time
   std::size_t summed_leaves = 0;  ///< of the last output time: where moments were summed
   std::size_t channels = 0;       ///< splatted per frame, over all sweeps
@@ -34,6 +34,7 @@ struct RunReport {
   double wall_seconds = 0;
   std::vector<std::pair<std::string, double>> seconds;      ///< by step of the run: read, splat, …; steps overlap
   std::vector<std::pair<std::string, std::size_t>> masked;  ///< reason → voxels, of the last output time
+  std::vector<BadFrame> bad_frames;                         ///< that were left out
   std::vector<std::string> averaging;                       ///< what there is to say of the averages, in words
   std::vector<std::string> files;                           ///< written
   ReadCounters read;
@@ -63,6 +64,11 @@ struct OutputFields {
 ///
 /// Where a region is given, or the pipeline has one, nothing is computed that fields within do not need, and they are
 /// the same, to the last bit, as without it; output holds the voxels of the region.
+///
+/// Where the input says OnError::skip_frame, a frame for which reading it or its contacts throws an InputError is left
+/// out of every sweep and stands in the report. So that this is known in the first sweep, that one reads the columns of
+/// all. An output time that has no frame left has no voxels and a frame_count of 0; no frame left at all is an
+/// InputError.
 ///
 /// `take` and `progress` are called by one thread at a time, `progress` after each frame of each sweep; what they throw
 /// ends the run.

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "grainvdb/frame_source.hpp"
+
 namespace grainvdb {
 
 std::vector<std::string> column_names(ColumnSet columns) {
@@ -13,6 +15,10 @@ std::vector<std::string> column_names(ColumnSet columns) {
   for (const auto& [column, name] : names)
     if (columns.has(column)) result.emplace_back(name);
   return result;
+}
+
+std::string to_string(const BadFrame& frame) {
+  return frame.step ? "step " + std::to_string(*frame.step) + ": " + frame.reason : frame.reason;
 }
 
 }  // namespace grainvdb

@@ -38,12 +38,25 @@ std::string files_written(const std::vector<std::string>& files) {
 
 }  // namespace
 
+std::string warnings(const RunReport& report) {
+  constexpr std::size_t shown = 10;
+  std::string text;
+  const std::size_t n = report.bad_frames.size();
+  for (std::size_t i = 0; i < std::min(shown, n); ++i)
+    text += "grainvdb: warning: left out " + to_string(report.bad_frames[i]) + '\n';
+  if (n > shown)
+    text += "grainvdb: warning: left out " + counted(n - shown, "more bad frame") +
+            ", which the result lists in /provenance/bad_frames\n";
+  return text;
+}
+
 std::string describe(const RunReport& report) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text << std::fixed << std::setprecision(2);
   text << counted(report.frames, "frame") << ", " << counted(report.active_voxels, "active voxel") << ", "
        << counted(report.channels, "channel") << " splatted per frame\n";
+  if (!report.bad_frames.empty()) text << "left out: " << counted(report.bad_frames.size(), "bad frame") << '\n';
   for (const std::string& line : report.averaging) text << "average: " << line << '\n';
   text << "time: " << report.wall_seconds << " s; by step, which overlap:";
   const char* between = " ";

@@ -63,6 +63,7 @@ void run(const Options& options) {
       if (!options.quiet) line.show(progress);
     });
   }
+  std::cerr << warnings(report);
   if (!options.quiet) std::cout << describe(report);
 }
 
@@ -80,7 +81,7 @@ void add_run(CLI::App& app) {
   command->add_option("--threads", options->threads, "Threads to use; all processors by default")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
-  command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
+  command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors and warnings");
   command->footer(footer);
   command->callback([options] { run(*options); });
 }

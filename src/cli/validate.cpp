@@ -20,13 +20,25 @@ struct Options {
   bool no_input = false;
 };
 
+// The first frame that the run will use.
+void check_first_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source) {
+  const std::vector<std::size_t> frames = select_frames(pipeline.frames, source.frames().size());
+  for (const std::size_t k : frames) {
+    try {
+      return check_frame(pipeline, plan, lattice, source, k);
+    } catch (const InputError&) {
+      if (pipeline.input.on_error == OnError::error || k == frames.back()) throw;
+    }
+  }
+}
+
 void validate(const Options& options) {
   const Pipeline pipeline = load_pipeline(options.pipeline.file, options.pipeline.overrides);
   const Plan plan = make_plan(pipeline);
   if (!options.no_input) {
     const auto source = open_input(pipeline, plan);
     const Lattice lattice = check_against_input(pipeline, plan, *source);
-    check_frame(pipeline, plan, lattice, *source, select_frames(pipeline.frames, source->frames().size()).front());
+    check_first_frame(pipeline, plan, lattice, *source);
   }
   std::cout << "valid\n";
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <sstream>
 #include <stdexcept>
 
@@ -56,10 +57,24 @@ void check_periodic_box(const Pipeline& pipeline, const FrameInfo& first, const 
   }
 }
 
-ColumnSet all_columns(const Plan& plan) {
-  ColumnSet all;
-  for (const Sweep& s : plan.sweeps) all |= s.columns;
-  return all;
+/// Before the first frame is read: what only the last sweep wants of the last frame would else be missed after hours.
+/// Where bad frames are skipped, there must be one that is not.
+void require_columns(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
+                     const std::vector<std::size_t>& wanted) {
+  const ColumnSet columns = all_columns(plan);
+  if (pipeline.input.on_error == OnError::error) {
+    for (std::size_t k : wanted) source.require(k, columns);
+    return;
+  }
+  std::exception_ptr first;
+  for (std::size_t k : wanted) {
+    try {
+      return source.require(k, columns);
+    } catch (const InputError&) {
+      if (!first) first = std::current_exception();
+    }
+  }
+  std::rethrow_exception(first);
 }
 
 }  // namespace
@@ -91,8 +106,7 @@ Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSou
     throw ConfigError({pipeline.location("lattice.voxel"), e.what(), {}, {}, {}});
   }
 
-  // Before the first frame is read: what only the last sweep wants of the last frame would else be missed after hours.
-  for (std::size_t k : wanted) source.require(k, all_columns(plan));
+  require_columns(pipeline, plan, source, wanted);
   return lattice;
 }
 

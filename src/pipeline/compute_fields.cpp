@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <exception>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "base/ordered_pipeline.hpp"
 #include "base/parallel.hpp"
 #include "grainvdb/run.hpp"
+#include "pipeline/bad_frames.hpp"
 #include "pipeline/clip_fields.hpp"
 #include "pipeline/derive_fields.hpp"
 #include "pipeline/schedule.hpp"
@@ -20,6 +23,8 @@ namespace grainvdb {
 namespace {
 
 using FramePtr = std::unique_ptr<FrameContext>;
+using MaybeFrame = OrFault<Frame>;
+using MaybeReady = OrFault<FramePtr>;
 
 std::size_t frames_in_flight(const Limits& limits) {
   if (limits.frames_in_flight > 0) return limits.frames_in_flight;
@@ -68,11 +73,13 @@ class Stream {
   RunReport run();
 
  private:
-  Frame read(const Visit& visit);
-  FramePtr prepare(const Visit& visit, Frame frame);
-  void finish(const Visit& visit, FrameContext& frame);
+  MaybeFrame read(const Visit& visit);
+  MaybeReady prepare(const Visit& visit, MaybeFrame frame);
+  void finish(const Visit& visit, MaybeReady& frame);
+  bool is_usable(const Visit& visit, const MaybeReady& frame);
   void show_progress(const Visit& visit);
-  std::span<const std::size_t> frames_in(std::size_t window) const;
+  OutputTime time_of_window(std::size_t window) const;
+  void require_material() const;
   DerivedFields derive() const;
   void end_window(std::size_t window);
 
@@ -89,6 +96,7 @@ class Stream {
   Stopwatch clock_;
   Progress now_;
   RunReport report_;
+  BadFrames bad_;
   std::size_t material_ = 0;  // particles that select kept, over frames and sweeps
 };
 
@@ -102,17 +110,18 @@ RunReport Stream::run() {
   ordered_pipeline(
       visits.size(), in_flight,
       [&](std::size_t i) { return tbb::this_task_arena::isolate([&] { return read(visits[i]); }); },
-      [&](std::size_t i, Frame frame) {
+      [&](std::size_t i, MaybeFrame frame) {
         return tbb::this_task_arena::isolate([&] { return prepare(visits[i], std::move(frame)); });
       },
-      [&](std::size_t i, FramePtr frame) {
-        tbb::this_task_arena::isolate([&] { finish(visits[i], *frame); });
-        frame.reset();
+      [&](std::size_t i, MaybeReady frame) {
+        tbb::this_task_arena::isolate([&] { finish(visits[i], frame); });
+        frame = {};
         show_progress(visits[i]);
         if (visits[i].ends_window) end_window(visits[i].window);
       });
 
-  report_.frames = schedule_.frame_count();
+  report_.frames = schedule_.frame_count() - bad_.count();
+  report_.bad_frames = bad_.list(source_);
   report_.channels = channel_count(plan_);
   report_.averaging.push_back(describe(schedule_, pipeline_));
   report_.seconds = clock_.seconds();
@@ -121,21 +130,41 @@ RunReport Stream::run() {
   return report_;
 }
 
-Frame Stream::read(const Visit& visit) {
-  return clock_.time("read", [&] { return source_.read(visit.frame, plan_.sweeps[visit.sweep].columns); });
+MaybeFrame Stream::read(const Visit& visit) {
+  const OnError on_error = pipeline_.input.on_error;
+  // Whether a frame is bad must be known before it is in any sum.
+  const bool all = on_error == OnError::skip_frame && visit.sweep == 0;
+  const ColumnSet columns = all ? all_columns(plan_) : plan_.sweeps[visit.sweep].columns;
+  return clock_.time("read", [&] { return attempt(on_error, [&] { return source_.read(visit.frame, columns); }); });
 }
 
-FramePtr Stream::prepare(const Visit& visit, Frame frame) {
+MaybeReady Stream::prepare(const Visit& visit, MaybeFrame frame) {
+  if (frame.fault) return {{}, frame.fault};
   return clock_.time("prepare", [&] {
-    return averager_.prepare(std::make_shared<const Material>(make_material(std::move(frame), pipeline_.select)),
-                             visit.sweep);
+    return attempt(pipeline_.input.on_error, [&] {
+      return averager_.prepare(
+          std::make_shared<const Material>(make_material(std::move(*frame.value), pipeline_.select)), visit.sweep);
+    });
   });
 }
 
-void Stream::finish(const Visit& visit, FrameContext& frame) {
-  clock_.time("splat", [&] { averager_.add(frame, visit); });
-  material_ += frame.particles().size();
+void Stream::finish(const Visit& visit, MaybeReady& frame) {
+  if (is_usable(visit, frame)) {
+    clock_.time("splat", [&] { averager_.add(**frame.value, visit); });
+    material_ += (*frame.value)->particles().size();
+  } else {
+    averager_.leave_out(visit);
+  }
   if (visit.ends_sweep) clock_.time("average", [&] { averager_.end_sweep(visit); });
+}
+
+/// A frame that was good in the first sweep has changed when it is bad in another.
+bool Stream::is_usable(const Visit& visit, const MaybeReady& frame) {
+  if (bad_.contains(visit.frame)) return false;
+  if (!frame.fault) return true;
+  if (visit.sweep > 0) std::rethrow_exception(frame.fault);
+  bad_.add(visit.frame, frame.fault);
+  return false;
 }
 
 void Stream::show_progress(const Visit& visit) {
@@ -146,9 +175,31 @@ void Stream::show_progress(const Visit& visit) {
   if (progress_) progress_(now_);
 }
 
-std::span<const std::size_t> Stream::frames_in(std::size_t window) const {
-  const FrameSpan& frames = schedule_.windows[window].frames;
-  return std::span(wanted_).subspan(frames.first, frames.count);
+OutputTime Stream::time_of_window(std::size_t window) const {
+  const FrameSpan& span = schedule_.windows[window].frames;
+  const auto all = std::span(wanted_).subspan(span.first, span.count);
+  std::vector<std::size_t> good;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(good), [&](std::size_t k) { return !bad_.contains(k); });
+  OutputTime time = time_of(source_, good.empty() ? all : good);
+  time.frame_count = good.size();
+  return time;
+}
+
+/// Contacts alone leave every other field undefined.
+void Stream::require_material() const {
+  const std::vector<BadFrame> bad = bad_.list(source_);
+  if (bad_.count() == schedule_.frame_count())
+    throw InputError({{bad.back().file, 0},
+                      "every frame is bad, and input.on_error leaves them all out",
+                      std::to_string(bad.size()) + ", of which the last: " + bad.back().reason,
+                      "at least one frame that can be used",
+                      {}});
+  if (material_ == 0)
+    throw InputError({{source_.frames()[wanted_[schedule_.windows.back().frames.first]].file, 0},
+                      "no material in any of the frames",
+                      {},
+                      "at least one particle that select keeps",
+                      "Check select and frames"});
 }
 
 DerivedFields Stream::derive() const {
@@ -158,14 +209,7 @@ DerivedFields Stream::derive() const {
 }
 
 void Stream::end_window(std::size_t window) {
-  // Contacts alone leave every other field undefined.
-  const std::span<const std::size_t> frames = frames_in(window);
-  if (window + 1 == schedule_.windows.size() && material_ == 0)
-    throw InputError({{source_.frames()[frames.front()].file, 0},
-                      "no material in any of the frames",
-                      {},
-                      "at least one particle that select keeps",
-                      "Check select and frames"});
+  if (window + 1 == schedule_.windows.size()) require_material();
   DerivedFields derived =
       clock_.time("derive", [&] { return tbb::this_task_arena::isolate([&] { return derive(); }); });
   report_.summed_leaves = averager_.means().topology()->leaf_count();
@@ -175,7 +219,7 @@ void Stream::end_window(std::size_t window) {
   report_.masked.clear();
   for (const ReasonInfo& r : reasons())
     if (const std::size_t n = derived.mask.count(r.reason); n > 0) report_.masked.emplace_back(r.name, n);
-  take_({time_of(source_, frames), std::move(derived.fields), std::move(derived.mask)});
+  take_({time_of_window(window), std::move(derived.fields), std::move(derived.mask)});
 }
 
 }  // namespace

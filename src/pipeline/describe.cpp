@@ -11,7 +11,7 @@
 namespace grainvdb {
 namespace {
 
-constexpr ColumnSet all_columns() {
+constexpr ColumnSet every_column() {
   return Column::velocity | Column::angular_velocity | Column::radius | Column::mass | ColumnSet(Column::type) |
          Column::contacts;
 }
@@ -81,7 +81,7 @@ std::vector<std::string> columns_not_read(const Plan& plan) {
   for (const Sweep& sweep : plan.sweeps)
     for (const std::string& name : column_names(sweep.columns)) read.insert(name);
   std::vector<std::string> rest;
-  for (const std::string& name : column_names(all_columns()))
+  for (const std::string& name : column_names(every_column()))
     if (!read.contains(name)) rest.push_back(name);
   return rest;
 }

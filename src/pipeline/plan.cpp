@@ -223,6 +223,12 @@ Halo merged(const Halo& a, const Halo& b) {
   return halo;
 }
 
+ColumnSet all_columns(const Plan& plan) {
+  ColumnSet all;
+  for (const Sweep& sweep : plan.sweeps) all |= sweep.columns;
+  return all;
+}
+
 Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
   check_reach(pipeline);
   check_voxel(pipeline);

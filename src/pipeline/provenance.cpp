@@ -1,6 +1,8 @@
 #include "pipeline/provenance.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <iterator>
 #include <set>
 #include <string>
 
@@ -26,6 +28,12 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
   std::vector<std::size_t> skipped;
   for (std::size_t k = 0; k < source.frames().size(); ++k)
     if (!std::binary_search(frames.begin(), frames.end(), k)) skipped.push_back(k);
+  std::set<std::int64_t> bad;
+  for (const BadFrame& frame : report.bad_frames)
+    if (frame.step) bad.insert(*frame.step);
+  std::vector<std::size_t> averaged;
+  std::copy_if(frames.begin(), frames.end(), std::back_inserter(averaged),
+               [&](std::size_t k) { return !bad.contains(source.frames()[k].step); });
   const auto step = [&](std::size_t k) { return std::to_string(source.frames()[k].step); };
   std::set<std::string> columns;
   for (const Sweep& sweep : plan.sweeps)
@@ -34,9 +42,10 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
           {"pipeline", pipeline.resolved},
           {"inputs", lines(source.files(), [](const auto& f) { return f.first + " " + std::to_string(f.second); })},
           {"units", source.units().name},
-          {"steps", lines(frames, step)},
+          {"steps", lines(averaged, step)},
           {"grain_volume_error", print_number(grain_volume_error(pipeline.cutoff / pipeline.voxel))},
           {"skipped_frames", lines(skipped, step)},
+          {"bad_frames", lines(report.bad_frames, [](const BadFrame& frame) { return to_string(frame); })},
           {"averaging", lines(report.averaging, plain)},
           {"columns_read", lines(columns, plain)},
           {"computed", lines(plan.stages, [](const Stage* s) { return s->name + ": " + s->equation; })},

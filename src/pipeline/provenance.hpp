@@ -10,7 +10,7 @@
 
 namespace grainvdb {
 
-/// `frames` are those that were averaged.
+/// `frames` are those that were averaged, and bad ones among them.
 Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const FrameSource& source,
                          std::span<const std::size_t> frames, const RunReport& report);
 

@@ -99,8 +99,10 @@ OutputLayout Writer::layout(const Topology::Bounds& bounds, const std::vector<co
   return layout;
 }
 
-/// Fields that can be undefined, or are made of such fields, are written with the reasons.
+/// Fields that can be undefined, or are made of such fields, are written with the reasons; so are output times that may
+/// have no frame.
 bool Writer::writes_mask() const {
+  if (pipeline_.input.on_error == OnError::skip_frame && schedule_.windows.size() > 1) return true;
   return std::any_of(plan_.stages.begin(), plan_.stages.end(),
                      [](const Stage* s) { return !s->additive || !s->compute; });
 }

@@ -109,6 +109,15 @@ void add_input(Schema& schema) {
   schema.keys.push_back(number_key("input", "radius", "length",
                                    "Radius of all grains, for dumps without radius and diameter.",
                                    [](Pipeline& p, const ConfigValue& v) { p.input.radius = std::get<double>(v); }));
+  KeyInfo on_error{"input", "on_error", ValueType::text,
+                   "What becomes of a frame that is malformed, or lacks columns or contacts: 'error' ends the run, "
+                   "'skip_frame' leaves it out, says so and records it in the result."};
+  on_error.choices = {"error", "skip_frame"};
+  on_error.default_value = std::string("error");
+  on_error.apply = [](Pipeline& p, const ConfigValue& v) {
+    p.input.on_error = std::get<std::string>(v) == "error" ? OnError::error : OnError::skip_frame;
+  };
+  schema.keys.push_back(on_error);
 }
 
 void add_contacts(Schema& schema) {

@@ -36,6 +36,8 @@ class WindowAverager {
 
   /// Adds the next frame of the current sweep. Throws LimitError when the sums would outgrow limits.memory_gb.
   void add(FrameContext& frame, const Visit& visit);
+  /// Goes on without the next frame of the current sweep.
+  void leave_out(const Visit& visit) { destination(visit); }
   /// Ends a sweep over a window.
   void end_sweep(const Visit& visit);
   /// Of the sweeps that have ended: a view of the sums, which begin_window takes away.

@@ -106,6 +106,7 @@ class DumpDirectory final : public FrameSource {
   std::vector<std::pair<std::string, std::uintmax_t>> files() const override;
   void require(std::size_t k, ColumnSet wanted) override;
   Frame read(std::size_t k, ColumnSet wanted) override;
+  std::vector<BadFrame> unreadable() const override;
   const ReadCounters& counters() const override { return counters_; }
 
  private:
@@ -121,19 +122,19 @@ class DumpDirectory final : public FrameSource {
 };
 
 DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
-    : spec_(spec), particles_(std::move(files.particles), RowKind::particles, counters_) {
+    : spec_(spec), particles_(std::move(files.particles), RowKind::particles, spec.on_error, counters_) {
   particles_.build_index();
   if (particles_.frames().empty())
     throw InputError(
         {stated_at(spec, "input.particles"),
          spec.particles.empty() ? "no particle dumps are given" : "no particle dump in " + listed(spec.particles),
-         {},
+         particles_.unreadable().empty() ? std::string() : particles_.unreadable().front().reason,
          "paths, directories or globs of particle dumps",
          {}});
   std::set<FileIdentity> particle_files;
   for (const InputFile& file : particles_.files()) particle_files.insert(file.identity);
   leave_out(files.contacts, particle_files);
-  contacts_.emplace(std::move(files.contacts), RowKind::contacts, counters_);
+  contacts_.emplace(std::move(files.contacts), RowKind::contacts, spec.on_error, counters_);
 
   units_ = choose_units(spec, particles_.units());
   for (const FrameRecord& record : particles_.frames()) {
@@ -152,6 +153,12 @@ std::vector<std::pair<std::string, std::uintmax_t>> DumpDirectory::files() const
   std::vector<std::pair<std::string, std::uintmax_t>> all;
   for (const DumpSeries* series : {&particles_, &*contacts_})
     for (const InputFile& file : series->files()) all.emplace_back(file.path, file.size);
+  return all;
+}
+
+std::vector<BadFrame> DumpDirectory::unreadable() const {
+  std::vector<BadFrame> all = particles_.unreadable();
+  all.insert(all.end(), contacts_->unreadable().begin(), contacts_->unreadable().end());
   return all;
 }
 

@@ -19,8 +19,8 @@ const char* plural(RowKind kind) {
 
 }  // namespace
 
-DumpSeries::DumpSeries(std::vector<InputFile> files, RowKind kind, ReadCounters& counters)
-    : files_(std::move(files)), kind_(kind), counters_(counters) {}
+DumpSeries::DumpSeries(std::vector<InputFile> files, RowKind kind, OnError on_error, ReadCounters& counters)
+    : files_(std::move(files)), kind_(kind), on_error_(on_error), counters_(counters) {}
 
 /// Opens a file in place of the one that is open. False when its format is not recognised.
 bool DumpSeries::open(std::size_t file) {
@@ -34,6 +34,7 @@ bool DumpSeries::open(std::size_t file) {
 void DumpSeries::build_index() {
   if (indexed_) return;
   frames_.clear();
+  unreadable_.clear();
   std::map<FileClass, double> bytes_per_row;
   std::vector<bool> used(files_.size(), false);
   for (std::size_t file = 0; file < files_.size(); ++file) {
@@ -56,16 +57,33 @@ void DumpSeries::build_index() {
   indexed_ = true;
 }
 
+/// False when it threw an InputError and the file is to be left out from here on.
+template <class Read>
+bool DumpSeries::attempt(const InputFile& input, Read read) {
+  if (on_error_ == OnError::error) {
+    read();
+    return true;
+  }
+  try {
+    read();
+    return true;
+  } catch (const InputError& error) {
+    unreadable_.push_back({input.path, {}, error.what()});
+    return false;
+  }
+}
+
 void DumpSeries::index_file(std::size_t file, std::map<FileClass, double>& bytes_per_row) {
   const InputFile& input = files_[file];
-  if (!open(file)) {
-    if (input.named) refuse_unrecognised(input.path, dump_.head);
-    return;
-  }
+  const bool opened = attempt(input, [&] {
+    if (!open(file) && input.named) refuse_unrecognised(input.path, dump_.head);
+  });
+  if (!opened || open_file_ != file) return;
   std::optional<FileClass> file_class;
   std::size_t count = 0;
   bool whole = true;
-  while (const std::optional<FrameHeader> header = dump_.dump->next_header()) {
+  std::optional<FrameHeader> header;
+  while (attempt(input, [&] { header = dump_.dump->next_header(); }) && header) {
     if (header->kind != kind_) {
       if (input.named) refuse_kind(*header, input.path);
       return;
@@ -84,7 +102,7 @@ void DumpSeries::index_file(std::size_t file, std::map<FileClass, double>& bytes
       }
     }
     // Missing rows are an error only for those who read the frame.
-    whole = dump_.dump->skip_rows() && whole;
+    if (!attempt(input, [&] { whole = dump_.dump->skip_rows() && whole; })) break;
   }
   if (count == 0) return;
   frames_.back().last_in_file = true;

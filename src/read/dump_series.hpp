@@ -38,17 +38,20 @@ struct Stated {
 class DumpSeries {
  public:
   /// Opens nothing. `counters` must outlive the series.
-  DumpSeries(std::vector<InputFile> files, RowKind kind, ReadCounters& counters);
+  DumpSeries(std::vector<InputFile> files, RowKind kind, OnError on_error, ReadCounters& counters);
 
   /// Opens every file and notes its frames. A file is taken to hold one frame, and only its header is read, when a file
   /// of the same columns and compression was read through and held one frame, and this one has at most 1.25 times as
   /// many bytes per row; read_rows finds out should that ever be wrong. Files met in a directory that are no dumps of
-  /// this kind are left out of files(). Throws InputError: no dump, malformed headers, a step twice, units in conflict.
+  /// this kind are left out of files(). Throws InputError: a step twice, units in conflict and, unless such frames are
+  /// to be skipped, no dump, malformed headers.
   void build_index();
   bool indexed() const { return indexed_; }
 
   const std::vector<InputFile>& files() const { return files_; }
   const std::vector<FrameRecord>& frames() const { return frames_; }
+  /// Files, or the rest of files, that the index leaves out for their faults.
+  const std::vector<BadFrame>& unreadable() const { return unreadable_; }
   const std::vector<std::string>& columns(const FrameRecord& frame) const { return column_sets_[frame.columns]; }
   /// What the index knows of a frame's header.
   FrameHeader header(const FrameRecord& frame) const;
@@ -68,6 +71,8 @@ class DumpSeries {
   using FileClass = std::pair<std::size_t, Compression>;
 
   bool open(std::size_t file);
+  template <class Read>
+  bool attempt(const InputFile& input, Read read);
   void index_file(std::size_t file, std::map<FileClass, double>& bytes_per_row);
   void note_units(const FrameHeader& header, const std::string& path);
   std::size_t column_set(const std::vector<std::string>& columns);
@@ -76,8 +81,10 @@ class DumpSeries {
 
   std::vector<InputFile> files_;
   RowKind kind_;
+  OnError on_error_;
   ReadCounters& counters_;
   std::vector<FrameRecord> frames_;
+  std::vector<BadFrame> unreadable_;
   std::vector<std::vector<std::string>> column_sets_;
   std::optional<Stated> units_;
   bool indexed_ = false;

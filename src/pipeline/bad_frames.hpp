@@ -1,0 +1,47 @@
+#pragma once
+/// The frames that a run leaves out, and how it comes to know them.
+#include <cstddef>
+#include <exception>
+#include <map>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "grainvdb/error.hpp"
+#include "grainvdb/frame_source.hpp"
+
+namespace grainvdb {
+
+/// What a step made of a frame, or what is wrong with the frame.
+template <class T>
+struct OrFault {
+  std::optional<T> value;
+  std::exception_ptr fault;
+};
+
+/// f(), or what is wrong with the frame where bad frames are to be skipped; otherwise that is thrown.
+template <class F>
+OrFault<std::invoke_result_t<F&>> attempt(OnError on_error, F f) {
+  if (on_error == OnError::error) return {f(), nullptr};
+  try {
+    return {f(), nullptr};
+  } catch (const InputError&) {
+    return {std::nullopt, std::current_exception()};
+  }
+}
+
+class BadFrames {
+ public:
+  bool contains(std::size_t frame) const { return reasons_.contains(frame); }
+  std::size_t count() const { return reasons_.size(); }
+  void add(std::size_t frame, const std::exception_ptr& fault);
+  /// First what the index of the source leaves out.
+  std::vector<BadFrame> list(const FrameSource& source) const;
+
+ private:
+  std::map<std::size_t, std::string> reasons_;  // by index into the source
+};
+
+}  // namespace grainvdb

@@ -1,0 +1,175 @@
+// Frames that cannot be used are left out of every sum, and never silently.
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stream/same_fields.hpp"
+#include "support/memory_source.hpp"
+#include "support/run_in_memory.hpp"
+#include "support/scenes.hpp"
+
+namespace grainvdb::testing {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+/// Some frames cannot be read when a certain column is wanted.
+class FaultySource : public MemorySource {
+ public:
+  FaultySource(std::vector<Frame> frames, std::map<std::int64_t, ColumnSet> faults)
+      : MemorySource(std::move(frames)), faults_(std::move(faults)) {}
+  Frame read(std::size_t k, ColumnSet wanted) override {
+    const FrameInfo& frame = frames()[k];
+    const auto fault = faults_.find(frame.step);
+    if (fault != faults_.end() && (wanted | fault->second) == wanted)
+      throw InputError({{frame.file, 7}, "a bad row", {}, {}, {}});
+    return MemorySource::read(k, wanted);
+  }
+
+ private:
+  std::map<std::int64_t, ColumnSet> faults_;
+};
+
+/// Seven frames of two kinds in turn, at the steps 0, 10, … 60.
+std::vector<Frame> frames_of(const Scene& scene) {
+  std::vector<Frame> frames;
+  for (int k = 0; k < 7; ++k) {
+    Frame frame = scene.frames[static_cast<std::size_t>(k) % scene.frames.size()];
+    frame.file = "frame" + std::to_string(k);
+    frame.step = 10 * k;
+    frame.time = 0.1 * k;
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+std::vector<Frame> without(std::vector<Frame> frames, const std::vector<std::int64_t>& steps) {
+  std::erase_if(frames, [&](const Frame& f) { return std::find(steps.begin(), steps.end(), f.step) != steps.end(); });
+  return frames;
+}
+
+class SkippedFrames : public ::testing::Test {
+ protected:
+  Pipeline skipping(std::vector<std::string> fields) const {
+    Pipeline p = scene_.pipeline(std::move(fields));
+    p.input.contacts.files = {"memory"};
+    p.input.on_error = OnError::skip_frame;
+    return p;
+  }
+  Scene scene_ = walled_scene();
+  std::vector<Frame> frames_ = frames_of(scene_);
+};
+
+// The mass is wanted by the second sweep alone: the frame must be out of the first one, too.
+TEST_F(SkippedFrames, AreInNoSumOfAnySweep) {
+  Pipeline p = skipping({"phi", "velocity", "stress"});
+  ASSERT_EQ(make_plan(p).sweeps.size(), 2U);
+  FaultySource faulty(frames_, {{20, Column::mass}, {60, Column::contacts}});
+  const Result result = run(p, faulty);
+  MemorySource good(without(frames_, {20, 60}));
+  const Result expected = run(p, good);
+  expect_same_fields(result.record, expected.record);
+  EXPECT_EQ(result.report.frames, 5U);
+  ASSERT_THAT(result.report.bad_frames, SizeIs(2));
+  EXPECT_EQ(result.report.bad_frames[0].step, 20);
+  EXPECT_EQ(result.report.bad_frames[1].step, 60);
+  EXPECT_THAT(result.report.bad_frames[0].reason, HasSubstr("frame2:7: a bad row"));
+}
+
+TEST_F(SkippedFrames, StandInTheProvenance) {
+  FaultySource faulty(frames_, {{0, {}}, {30, {}}});
+  const Result result = run(skipping({"phi"}), faulty);
+  std::map<std::string, std::string> provenance(result.record.provenance.begin(), result.record.provenance.end());
+  EXPECT_EQ(provenance.at("steps"), "10\n20\n40\n50\n60\n");
+  EXPECT_EQ(provenance.at("bad_frames"), "step 0: frame0:7: a bad row\nstep 30: frame3:7: a bad row\n");
+}
+
+TEST_F(SkippedFrames, EndTheRunUnlessAskedFor) {
+  Pipeline p = skipping({"phi"});
+  p.input.on_error = OnError::error;
+  FaultySource faulty(frames_, {{30, {}}});
+  EXPECT_THROW(run(p, faulty), InputError);
+}
+
+TEST_F(SkippedFrames, LeaveTheirWindowTheRest) {
+  Pipeline p = skipping({"phi", "kinetic_stress"});
+  p.window = 3;
+  FaultySource faulty(frames_, {{30, {}}, {50, {}}});
+  const Result result = run(p, faulty);
+  ASSERT_THAT(result.record.times, SizeIs(3));
+  MemorySource alone(std::vector<Frame>{frames_[4]});
+  expect_same_fields(result.record.times[1], run(p, alone).only());
+  EXPECT_EQ(result.record.times[1].time.frame_count, 1U);
+  EXPECT_EQ(result.record.times[0].time.frame_count, 3U);
+}
+
+// Parts that windows share begin with a bad frame, or have no other.
+TEST_F(SkippedFrames, LeaveWindowsThatSlideTheRest) {
+  Pipeline p = skipping({"phi", "kinetic_stress"});
+  p.window = 4;
+  p.window_step = 2;
+  FaultySource faulty(frames_, {{20, {}}, {40, {}}, {50, {}}});
+  const Result result = run(p, faulty);
+  ASSERT_THAT(result.record.times, SizeIs(3));
+  const std::vector<std::vector<std::int64_t>> bad{{20, 40, 50, 60}, {0, 10, 20, 40, 50, 60}, {0, 10, 20, 30, 40, 50}};
+  for (std::size_t w = 0; w < 3; ++w) {
+    Pipeline alone = p;
+    alone.window = alone.window_step = 0;
+    MemorySource good(without(frames_, bad[w]));
+    expect_same_fields(result.record.times[w], run(alone, good).only());
+  }
+}
+
+TEST_F(SkippedFrames, MayLeaveAnOutputTimeWithoutVoxels) {
+  Pipeline p = skipping({"phi"});
+  p.window = 1;
+  FaultySource faulty(frames_, {{30, {}}});
+  const Result result = run(p, faulty);
+  ASSERT_THAT(result.record.times, SizeIs(7));
+  const Written& empty = result.record.times[3];
+  EXPECT_EQ(empty.time.frame_count, 0U);
+  EXPECT_EQ(empty.time.first_step, 30);
+  EXPECT_DOUBLE_EQ(empty.time.time, 0.3);
+  EXPECT_EQ(empty.field("phi").topology->leaf_count(), 0U);
+  EXPECT_TRUE(empty.has_mask);  // so that it can be told from an empty box
+}
+
+TEST_F(SkippedFrames, AreNotAllThereIs) {
+  std::map<std::int64_t, ColumnSet> all;
+  for (const Frame& f : frames_) all[f.step] = {};
+  for (const std::size_t window : {0, 1, 3}) {
+    Pipeline p = skipping({"phi"});
+    p.window = window;
+    FaultySource faulty(frames_, all);
+    try {
+      run(p, faulty);
+      ADD_FAILURE() << "no error";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("every frame is bad"), HasSubstr("frame6:7: a bad row")));
+    }
+  }
+}
+
+// Files are in flight in any order, what is found in them is not.
+TEST_F(SkippedFrames, AreTheSameForAnyNumberInFlight) {
+  std::vector<Result> results;
+  for (const std::size_t in_flight : {1U, 8U}) {
+    Pipeline p = skipping({"phi", "stress"});
+    p.window = 2;
+    p.limits.frames_in_flight = in_flight;
+    FaultySource faulty(frames_, {{10, Column::mass}, {40, Column::contacts}});
+    results.push_back(run(p, faulty));
+  }
+  expect_same_fields(results[0].record, results[1].record);
+  EXPECT_THAT(results[1].report.bad_frames, SizeIs(2));
+}
+
+}  // namespace
+}  // namespace grainvdb::testing
