@@ -1,5 +1,6 @@
 #include "write/hdf5_file.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <hdf5_hl.h>
@@ -224,14 +225,18 @@ void Hdf5File::write_chunk(const std::string& path, const Hdf5Dims& start, std::
 
 void Hdf5File::create_text(const std::string& path, const std::string& text) {
   const Quiet quiet;
-  const auto type = text_type();
+  // Of fixed length, and ASCII where it is: Octave reads no others, and nothing that comes after one.
+  const auto type = checked(H5Tcopy(H5T_C_S1), H5Tclose, "describe", path);
+  check(H5Tset_size(type.id(), std::max<std::size_t>(text.size(), 1)), "describe", path);
+  check(H5Tset_strpad(type.id(), H5T_STR_NULLPAD), "describe", path);
+  const bool ascii = std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+  check(H5Tset_cset(type.id(), ascii ? H5T_CSET_ASCII : H5T_CSET_UTF8), "describe", path);
   const auto properties = dataset_properties();
   const auto space = checked(make_space(std::nullopt), H5Sclose, "create", path);
   auto set =
       checked(H5Dcreate2(file_->id(), path.c_str(), type.id(), space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
               H5Dclose, "create", path);
-  const char* characters = text.c_str();
-  check(H5Dwrite(set.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, &characters), "write", path);
+  check(H5Dwrite(set.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.c_str()), "write", path);
   check(set.close(), "close", path);
 }
 

@@ -76,12 +76,14 @@ class Hdf5Reader {
     H5Dclose(set);
     return equal;
   }
+  /// A text of fixed length, which is all that Octave reads.
   std::string text(const std::string& path) const {
     const hid_t set = open(path);
     const hid_t type = H5Dget_type(set);
-    char* characters = nullptr;
-    H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, &characters);
-    const std::string result = taken(characters);
+    if (H5Tis_variable_str(type) != 0) throw std::runtime_error(path + " is no text of fixed length");
+    std::string result(H5Tget_size(type), '\0');
+    H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, result.data());
+    result.erase(result.find_last_not_of('\0') + 1);
     H5Tclose(type);
     H5Dclose(set);
     return result;
