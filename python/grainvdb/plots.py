@@ -9,6 +9,8 @@ from . import laws
 from .fields import AXES, Fields
 from .tracers import Tracers
 
+# Fields of three numbers that are no vector in space.
+TRIPLES = ("principal_stress",)
 
 
 def label(name: str, unit: str) -> str:
@@ -18,13 +20,16 @@ def label(name: str, unit: str) -> str:
 
 
 def scalar(fields: Fields, name: str, time: int = -1) -> tuple[np.ndarray, str]:
-    """A field as one number per voxel with its label: the magnitude of a vector, a third of the trace of a tensor."""
+    """A field as one number per voxel with its label: the magnitude of a vector, a third of the trace of a tensor, the
+    most compressive principal stress."""
     values = fields.values(name, time).astype(float)
     unit = fields.unit(name)
     if values.ndim == 3:
         return values, label(name, unit)
     if values.shape[3] == 9:
         return values[..., [0, 4, 8]].mean(axis=3), label(f"mean {name}", unit)
+    if name in TRIPLES:
+        return values[..., 2], label(f"{name} 3", unit)
     return np.linalg.norm(values[..., :3], axis=3), label(f"|{name}|", unit)
 
 
@@ -63,7 +68,7 @@ def field_slice(fields: Fields, name: str, axis: str | None = None, index: int |
                       vmin=-bound if signed else low, vmax=bound if signed else high, interpolation="nearest")
     ax.figure.colorbar(image, ax=ax, shrink=0.85)
     vectors = fields.values(name, time)
-    if vectors.ndim == 4 and vectors.shape[3] == 3:
+    if vectors.ndim == 4 and vectors.shape[3] == 3 and name not in TRIPLES:
         _arrows(fields, ax, np.take(vectors, index, axis=2 - AXES.index(axis)), across, up)
     ax.set(xlabel=label(across, fields.unit(across)), ylabel=label(up, fields.unit(up)), title=text)
     return ax
