@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include <tbb/enumerable_thread_specific.h>
 
 #include "base/parallel.hpp"
 #include "splat/value_unit.hpp"
@@ -30,6 +31,13 @@ struct RecordCopy {
   std::size_t weights;
   float* to;
   float* largest;
+};
+
+// Values in double precision, [row][stride].
+struct Rows {
+  const double* values;
+  std::size_t count;
+  std::size_t stride;
 };
 
 }  // namespace grainvdb
@@ -76,6 +84,51 @@ void CopyRecords(const RecordCopy& copy) {
   for (; c < copy.stride; c += hn::Lanes(d4)) CopyPart(copy, d4, c);
 }
 
+constexpr hn::CappedTag<double, 4> doubles;  // rows are padded to four
+constexpr hn::Rebind<float, decltype(doubles)> singles;
+
+// For every channel of some rows their sum and the least of them.
+void SumRows(const Rows& rows, double* HWY_RESTRICT sums, double* HWY_RESTRICT least) {
+  for (std::size_t c = 0; c < rows.stride; c += hn::Lanes(doubles)) {
+    auto sum = hn::Zero(doubles), low = hn::Set(doubles, hwy::HighestValue<double>());
+    for (std::size_t k = 0; k < rows.count; ++k) {
+      const auto v = hn::LoadU(doubles, rows.values + k * rows.stride + c);
+      sum = hn::Add(sum, v);
+      low = hn::Min(low, v);
+    }
+    hn::StoreU(sum, doubles, sums + c);
+    hn::StoreU(low, doubles, least + c);
+  }
+}
+
+// For every channel the largest |value - mean · weight|.
+void SpreadOfRows(const Rows& rows, const double* HWY_RESTRICT mean, std::size_t weight, double* HWY_RESTRICT apart) {
+  for (std::size_t c = 0; c < rows.stride; c += hn::Lanes(doubles)) {
+    const auto middle = hn::LoadU(doubles, mean + c);
+    auto largest = hn::Zero(doubles);
+    for (std::size_t k = 0; k < rows.count; ++k) {
+      const double* HWY_RESTRICT row = rows.values + k * rows.stride;
+      const auto v = hn::NegMulAdd(middle, hn::Set(doubles, row[weight]), hn::LoadU(doubles, row + c));
+      largest = hn::Max(largest, hn::Abs(v));
+    }
+    hn::StoreU(largest, doubles, apart + c);
+  }
+}
+
+// (value - reference · weight) · inverse in single precision, where the references of different weights are apart.
+void NarrowRows(const Rows& rows, const double* HWY_RESTRICT references, const std::size_t* HWY_RESTRICT weights,
+                std::size_t weight_count, const double* HWY_RESTRICT inverse, float* HWY_RESTRICT to) {
+  for (std::size_t k = 0; k < rows.count; ++k) {
+    const double* HWY_RESTRICT row = rows.values + k * rows.stride;
+    for (std::size_t c = 0; c < rows.stride; c += hn::Lanes(doubles)) {
+      auto v = hn::LoadU(doubles, row + c);
+      for (std::size_t w = 0; w < weight_count; ++w)
+        v = hn::NegMulAdd(hn::LoadU(doubles, references + w * rows.stride + c), hn::Set(doubles, row[weights[w]]), v);
+      hn::StoreU(hn::DemoteTo(singles, hn::Mul(v, hn::LoadU(doubles, inverse + c))), singles, to + k * rows.stride + c);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace grainvdb
@@ -84,6 +137,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace grainvdb {
 HWY_EXPORT(CopyRecords);
+HWY_EXPORT(SumRows);
+HWY_EXPORT(SpreadOfRows);
+HWY_EXPORT(NarrowRows);
 
 namespace {
 
@@ -100,6 +156,50 @@ std::vector<WeighedChannels> by_weight(std::span<const int> weight_of) {
   return all;
 }
 
+/// The unit of each channel over all points.
+std::vector<double> scales(std::span<const double> q, std::size_t channels) {
+  constexpr std::size_t points = 4096;  // of a part
+  const std::size_t step = points * channels;
+  const std::size_t parts = (q.size() + step - 1) / step;
+  std::vector<double> of_part(parts * channels);
+  parallel_for(parts, [&](std::size_t part) {
+    double* largest = of_part.data() + part * channels;
+    const std::size_t end = std::min((part + 1) * step, q.size());
+    for (std::size_t n = part * step; n < end; n += channels)
+      for (std::size_t c = 0; c < channels; ++c) largest[c] = std::max(largest[c], std::abs(q[n + c]));
+  });
+  std::vector<double> scale(channels, 0.0);
+  for (std::size_t n = 0; n < of_part.size(); n += channels)
+    for (std::size_t c = 0; c < channels; ++c) scale[c] = std::max(scale[c], of_part[n + c]);
+  for (double& s : scale) s = unit_of(s);
+  return scale;
+}
+
+/// Scratch of a cell.
+struct CellWork {
+  std::vector<double> rows;                     // of its entries
+  std::vector<double> sums, least;              // of each channel
+  std::vector<double> mean, apart, references;  // [weight][stride]
+};
+
+/// Collects the rows of a cell's entries. They lie scattered over the points: each is asked for some rows ahead.
+Rows rows_of(const Buckets& buckets, std::size_t cell, std::span<const double> q, std::size_t channels,
+             std::size_t stride, std::vector<double>& to) {
+  constexpr std::size_t ahead = 12;
+  constexpr std::size_t line = 64 / sizeof(double);
+  const std::size_t begin = buckets.start[cell];
+  const std::size_t count = buckets.start[cell + 1] - begin;
+  const auto row = [&](std::size_t k) { return q.data() + buckets.point[begin + k] * channels; };
+  to.resize(count * stride);
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k + ahead < count)
+      for (std::size_t c = 0; c < channels; c += line) __builtin_prefetch(row(k + ahead) + c);
+    std::copy_n(row(k), channels, to.data() + k * stride);
+    std::fill_n(to.data() + k * stride + channels, stride - channels, 0.0);
+  }
+  return {to.data(), count, stride};
+}
+
 }  // namespace
 
 Records::Records(const Buckets& buckets, std::span<const double> q, std::span<const int> weight_of)
@@ -108,61 +208,45 @@ Records::Records(const Buckets& buckets, std::span<const double> q, std::span<co
       stride_((weight_of.size() + 3) / 4 * 4),
       weight_(channels_),
       weighed_(by_weight(weight_of)),
-      scale_(channels_, 0.0),
+      scale_(scales(q, weight_of.size())),
       reference_(buckets.cells.size() * channels_),
       spread_(buckets.cells.size() * channels_) {
   for (std::size_t c = 0; c < channels_; ++c)
     weight_[c] = weight_of[c] < 0 ? c : static_cast<std::size_t>(weight_of[c]);
-  for (std::size_t n = 0; n < q.size(); n += channels_)
-    for (std::size_t c = 0; c < channels_; ++c) scale_[c] = std::max(scale_[c], std::abs(q[n + c]));
-  std::vector<double> inverse(channels_);
-  for (std::size_t c = 0; c < channels_; ++c) {
-    scale_[c] = unit_of(scale_[c]);
-    inverse[c] = 1 / scale_[c];
-  }
+  std::vector<double> inverse(stride_, 0.0);
+  for (std::size_t c = 0; c < channels_; ++c) inverse[c] = 1 / scale_[c];
+  std::vector<std::size_t> weights;
+  for (const WeighedChannels& w : weighed_) weights.push_back(w.weight);
 
   float* const values = values_.room(buckets.point.size() * stride_);
+  tbb::enumerable_thread_specific<CellWork> works;
   parallel_for(buckets.cells.size(), [&](std::size_t cell) {
-    const std::size_t begin = buckets.start[cell];
-    const std::size_t end = buckets.start[cell + 1];
-    for (const WeighedChannels& w : weighed_) choose_references(cell, w, q);
-    const double* reference = reference_.data() + cell * channels_;
-    for (std::size_t e = begin; e < end; ++e) {
-      const double* from = q.data() + buckets.point[e] * channels_;
-      float* to = values + e * stride_;
-      for (std::size_t c = 0; c < channels_; ++c) to[c] = static_cast<float>(from[c] * inverse[c]);
-      for (std::size_t c = channels_; c < stride_; ++c) to[c] = 0;
-      for (const WeighedChannels& w : weighed_)
-        for (const std::size_t c : w.channels)
-          to[c] = static_cast<float>((from[c] - reference[c] * from[w.weight]) * inverse[c]);
+    CellWork& work = works.local();
+    const Rows rows = rows_of(buckets, cell, q, channels_, stride_, work.rows);
+    work.references.assign(weights.size() * stride_, 0.0);
+    if (!weights.empty()) {
+      work.sums.resize(stride_);
+      work.least.resize(stride_);
+      work.mean.resize(stride_);
+      work.apart.resize(stride_);
+      HWY_DYNAMIC_DISPATCH(SumRows)(rows, work.sums.data(), work.least.data());
+      for (std::size_t w = 0; w < weights.size(); ++w) {
+        const double least = work.least[weights[w]];
+        if (!(least > 0)) continue;
+        for (std::size_t c = 0; c < stride_; ++c) work.mean[c] = work.sums[c] / work.sums[weights[w]];
+        HWY_DYNAMIC_DISPATCH(SpreadOfRows)(rows, work.mean.data(), weights[w], work.apart.data());
+        for (const std::size_t c : weighed_[w].channels) {
+          const double spread = work.apart[c] / least;
+          if (!(spread <= 0.5 * std::abs(work.mean[c]))) continue;
+          work.references[w * stride_ + c] = reference_[cell * channels_ + c] = work.mean[c];
+          spread_[cell * channels_ + c] = spread;
+        }
+      }
     }
+    HWY_DYNAMIC_DISPATCH(NarrowRows)
+    (rows, work.references.data(), weights.data(), weights.size(), inverse.data(),
+     values + buckets.start[cell] * stride_);
   });
-}
-
-void Records::choose_references(std::size_t cell, const WeighedChannels& weighed, std::span<const double> q) {
-  const std::size_t begin = buckets_.start[cell];
-  const std::size_t end = buckets_.start[cell + 1];
-  const auto record = [&](std::size_t e) { return q.data() + buckets_.point[e] * channels_; };
-  double least = std::numeric_limits<double>::infinity();  // of the weights
-  double weights = 0;
-  for (std::size_t e = begin; e < end; ++e) {
-    const double w = record(e)[weighed.weight];
-    least = std::min(least, w);
-    weights += w;
-  }
-  if (!(least > 0)) return;
-  for (const std::size_t c : weighed.channels) {
-    double sum = 0;
-    for (std::size_t e = begin; e < end; ++e) sum += record(e)[c];
-    const double mean = sum / weights;
-    double apart = 0;  // largest |w (q - mean)|
-    for (std::size_t e = begin; e < end; ++e)
-      apart = std::max(apart, std::abs(record(e)[c] - mean * record(e)[weighed.weight]));
-    const double spread = apart / least;
-    if (!(spread <= 0.5 * std::abs(mean))) continue;
-    reference_[cell * channels_ + c] = mean;
-    spread_[cell * channels_ + c] = spread;
-  }
 }
 
 double Records::leaf_reference(const Coord& leaf, const LeafCandidates& candidates, std::size_t channel) const {

@@ -56,7 +56,6 @@ class Records final : public RecordSource {
   void gather(const Coord& leaf, const LeafCandidates& candidates, LeafRecords& out) const override;
 
  private:
-  void choose_references(std::size_t cell, const WeighedChannels& weighed, std::span<const double> q);
   double leaf_reference(const Coord& leaf, const LeafCandidates& candidates, std::size_t channel) const;
 
   const Buckets& buckets_;
