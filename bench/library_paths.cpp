@@ -22,7 +22,7 @@ std::vector<int> weights(int channels) {
 SparseField make_field(const Setting& setting, std::shared_ptr<const Topology> topology, int channels) {
   FieldMeta meta;
   meta.components = channels;
-  return {meta, std::move(topology), setting.lattice};
+  return SparseField::unset(meta, std::move(topology), setting.lattice);
 }
 
 /// `values` are laid out [channel][offset].
@@ -37,10 +37,10 @@ void store(const double* values, std::size_t leaf, SparseField& field) {
 
 Grids splat_to_grids(const Setting& setting, const Scene& scene, std::span<const double> q, int channels) {
   const Prepared prepared = prepare(setting, scene);
-  SparseField field = make_field(setting, prepared.topology, channels);
-  splat_particles_fast(setting.lattice, setting.kernel, prepared.buckets, *prepared.topology, q, weights(channels),
-                       [&](std::size_t leaf, const double* values) { store(values, leaf, field); });
-  return field.grids().components;
+  return splat_particles_field({}, setting.lattice, setting.kernel, prepared.buckets, prepared.topology, q,
+                               weights(channels))
+      .grids()
+      .components;
 }
 
 Prepared prepare(const Setting& setting, const Scene& scene) {

@@ -3,6 +3,7 @@
 /// This header keeps OpenVDB out of the way; grids.hpp gives access to the grids themselves.
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ class SparseField {
  public:
   /// All values start at the background.
   SparseField(FieldMeta meta, std::shared_ptr<const Topology> topology, const Lattice& lattice);
+  /// A field whose values are not set: every leaf has to be written whole, all its 512 values, before anything reads
+  /// it. Saves writing large fields twice.
+  static SparseField unset(FieldMeta meta, std::shared_ptr<const Topology> topology, const Lattice& lattice);
   ~SparseField();
   SparseField(SparseField&&) noexcept;
   SparseField& operator=(SparseField&&) noexcept;
@@ -40,6 +44,10 @@ class SparseField {
   const float* leaf(std::size_t leaf, int component = 0) const {
     return leaves_[leaf * components_() + static_cast<std::size_t>(component)];
   }
+  /// All components of a leaf.
+  std::span<float* const> components_of(std::size_t leaf) {
+    return {leaves_.data() + leaf * components_(), components_()};
+  }
   /// The value at a voxel, the background outside the topology. For tests and look-ups, not for loops.
   float value(const Coord& c, int component = 0) const;
 
@@ -48,6 +56,7 @@ class SparseField {
   const Grids& grids() const { return *grids_; }
 
  private:
+  SparseField(FieldMeta meta, std::shared_ptr<const Topology> topology);
   std::size_t components_() const { return static_cast<std::size_t>(meta_.components); }
   FieldMeta meta_;
   std::shared_ptr<const Topology> topology_;

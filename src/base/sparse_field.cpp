@@ -1,10 +1,9 @@
 #include "grainvdb/sparse_field.hpp"
 
 #include <algorithm>
-#include <stdexcept>
+#include <utility>
 
-#include <openvdb/tree/LeafManager.h>
-
+#include "base/parallel.hpp"
 #include "grainvdb/grids.hpp"
 
 namespace grainvdb {
@@ -13,45 +12,54 @@ namespace {
 static_assert(openvdb::FloatTree::LeafNodeType::SIZE == leaf_size);
 static_assert(sizeof(openvdb::FloatTree::LeafNodeType::NodeMaskType) == sizeof(LeafMask));
 
-openvdb::FloatTree::Ptr make_tree(const Topology& topology, float background) {
-  auto tree = std::make_shared<openvdb::FloatTree>(background);
-  openvdb::tree::ValueAccessor<openvdb::FloatTree> accessor(*tree);
-  for (std::size_t l = 0; l < topology.leaf_count(); ++l) {
-    const Coord& o = topology.origin(l);
-    auto* leaf = new openvdb::FloatTree::LeafNodeType(openvdb::Coord(o.x, o.y, o.z), background);
-    openvdb::FloatTree::LeafNodeType::NodeMaskType mask;
-    for (unsigned w = 0; w < 8; ++w) mask.getWord<std::uint64_t>(w) = topology.mask(l).words[w];
-    leaf->setValueMask(mask);
-    accessor.addLeaf(leaf);  // the tree owns it
-  }
-  return tree;
+using Tree = openvdb::FloatTree;
+using Leaf = Tree::LeafNodeType;
+
+/// A leaf whose values are not set.
+Leaf* make_leaf(const Coord& origin, const LeafMask& active, float background) {
+  auto* leaf = new Leaf(openvdb::PartialCreate(), openvdb::Coord(origin.x, origin.y, origin.z), background);
+  Leaf::NodeMaskType mask;
+  for (unsigned w = 0; w < 8; ++w) mask.getWord<std::uint64_t>(w) = active.words[w];
+  leaf->setValueMask(mask);
+  return leaf;
 }
 
 }  // namespace
 
-SparseField::SparseField(FieldMeta meta, std::shared_ptr<const Topology> topology, const Lattice& lattice)
-    : meta_(std::move(meta)),
-      topology_(std::move(topology)),
-      grids_(std::make_unique<Grids>()),
-      leaves_(topology_->leaf_count() * components_()) {
+SparseField SparseField::unset(FieldMeta meta, std::shared_ptr<const Topology> topology, const Lattice& lattice) {
+  SparseField field(std::move(meta), std::move(topology));
   const double h = lattice.voxel();
   const Vec3& o = lattice.origin();
   const auto transform = openvdb::math::Transform::createLinearTransform(h);
   transform->postTranslate({o[0] + h / 2, o[1] + h / 2, o[2] + h / 2});
-  for (std::size_t c = 0; c < components_(); ++c) {
-    const auto tree = c == 0 ? make_tree(*topology_, meta_.background)
-                             : std::make_shared<openvdb::FloatTree>(grids_->components[0]->tree(), meta_.background,
-                                                                    openvdb::TopologyCopy());
+  const float background = field.meta_.background;
+  field.grids_->components.resize(field.components_());
+  parallel_for(field.components_(), [&](std::size_t c) {
+    const auto tree = std::make_shared<Tree>(background);
+    openvdb::tree::ValueAccessor<Tree> accessor(*tree);
+    for (std::size_t l = 0; l < field.topology_->leaf_count(); ++l) {
+      Leaf* leaf = make_leaf(field.topology_->origin(l), field.topology_->mask(l), background);
+      field.leaves_[l * field.components_() + c] = leaf->buffer().data();
+      accessor.addLeaf(leaf);  // the tree owns it
+    }
     auto grid = openvdb::FloatGrid::create(tree);
-    grid->setName(meta_.name);
+    grid->setName(field.meta_.name);
     grid->setTransform(transform->copy());
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-    for (std::size_t l = 0; l < topology_->leaf_count(); ++l) {
-      const Coord& q = topology_->origin(l);
-      leaves_[l * components_() + c] = tree->probeLeaf(openvdb::Coord(q.x, q.y, q.z))->buffer().data();
-    }
-    grids_->components.push_back(std::move(grid));
-  }
+    field.grids_->components[c] = std::move(grid);
+  });
+  return field;
+}
+
+SparseField::SparseField(FieldMeta meta, std::shared_ptr<const Topology> topology)
+    : meta_(std::move(meta)),
+      topology_(std::move(topology)),
+      grids_(std::make_unique<Grids>()),
+      leaves_(topology_->leaf_count() * components_()) {}
+
+SparseField::SparseField(FieldMeta meta, std::shared_ptr<const Topology> topology, const Lattice& lattice)
+    : SparseField(unset(std::move(meta), std::move(topology), lattice)) {
+  parallel_for(leaves_.size(), [&](std::size_t l) { std::fill_n(leaves_[l], leaf_size, meta_.background); });
 }
 
 SparseField::~SparseField() = default;

@@ -21,35 +21,51 @@ namespace grainvdb {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A brick is the block of voxels that fills a register: 2×2×(N/4), or one voxel without vectors.
 using D = hn::CappedTag<float, 16>;
 using DI = hn::RebindToSigned<D>;
 using V = hn::Vec<D>;
 constexpr D d;
 constexpr DI di;
-constexpr int lanes = static_cast<int>(hn::MaxLanes(D()));
-constexpr int brick_x = lanes >= 4 ? 2 : 1, brick_y = brick_x, brick_z = lanes / (brick_x * brick_y);
+
+/// A brick is the block of voxels that fills a register: 2×2×(N/4), or one voxel without vectors.
+template <class Tag>
+struct Brick {
+  static constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag()));
+  static constexpr int x = lanes >= 4 ? 2 : 1, y = x, z = lanes / (x * y);
+};
+constexpr int lanes = Brick<D>::lanes;
+constexpr int brick_x = Brick<D>::x, brick_y = Brick<D>::y, brick_z = Brick<D>::z;
 constexpr int block = 4;  // voxels along the edge of a block, whose candidates are picked once for its bricks
 
+/// Squared distances, in units of the cutoff, carry the rounding of three positions (2e-7 each) and of their squares.
+constexpr float margin = 4e-6F;
+
 /// The voxel centres of a brick, relative to the leaf's centre.
-struct Voxels {
-  V x, y, z;
+template <class Tag>
+struct VoxelsOf {
+  hn::Vec<Tag> x, y, z;
 };
-HWY_INLINE Voxels brick_voxels(const VoxelBox& brick, float h) {
+using Voxels = VoxelsOf<D>;
+template <class Tag>
+HWY_INLINE VoxelsOf<Tag> brick_voxels_of(Tag tag, const VoxelBox& brick, float h) {
+  using B = Brick<Tag>;
   HWY_ALIGN static constexpr auto steps = [] {
-    std::array<std::array<float, lanes>, 3> at{};
-    for (int l = 0; l < lanes; ++l) {
-      at[0][static_cast<std::size_t>(l)] = static_cast<float>(l / (brick_y * brick_z)) - 3.5F;
-      at[1][static_cast<std::size_t>(l)] = static_cast<float>(l / brick_z % brick_y) - 3.5F;
-      at[2][static_cast<std::size_t>(l)] = static_cast<float>(l % brick_z) - 3.5F;
+    std::array<std::array<float, B::lanes>, 3> at{};
+    for (int l = 0; l < B::lanes; ++l) {
+      at[0][static_cast<std::size_t>(l)] = static_cast<float>(l / (B::y * B::z)) - 3.5F;
+      at[1][static_cast<std::size_t>(l)] = static_cast<float>(l / B::z % B::y) - 3.5F;
+      at[2][static_cast<std::size_t>(l)] = static_cast<float>(l % B::z) - 3.5F;
     }
     return at;
   }();
   const auto along = [&](int axis, int first) {
-    const V step = hn::LoadU(d, steps[static_cast<std::size_t>(axis)].data());
-    return hn::Mul(hn::Set(d, h), hn::Add(step, hn::Set(d, static_cast<float>(first))));
+    const auto step = hn::LoadU(tag, steps[static_cast<std::size_t>(axis)].data());
+    return hn::Mul(hn::Set(tag, h), hn::Add(step, hn::Set(tag, static_cast<float>(first))));
   };
   return {along(0, brick.x), along(1, brick.y), along(2, brick.z)};
+}
+HWY_INLINE Voxels brick_voxels(const VoxelBox& brick, float h) {
+  return brick_voxels_of(d, brick, h);
 }
 
 /// The box of the centres of some voxels, and the squared distance from it below which candidates are picked.
@@ -69,26 +85,55 @@ HWY_INLINE hn::Mask<D> near_box(const Voxels& v, const BoxTest& box, std::size_t
   return count < lanes ? hn::And(near, hn::FirstN(d, count)) : near;
 }
 
+// Tables for compressing four and eight lanes, where there is no instruction for it. Highway's own are copied to the
+// stack with every use when GCC 12 compiles them, which takes longer than all the rest.
+/// The lanes of a mask of eight, the first in the lowest four bits.
+inline constexpr auto lanes_of_eight = [] {
+  std::array<std::uint32_t, 256> table{};
+  for (unsigned mask = 0; mask < 256; ++mask)
+    for (unsigned lane = 0, n = 0; lane < 8; ++lane)
+      if ((mask >> lane & 1U) != 0) table[mask] |= lane << (4 * n++);
+  return table;
+}();
+/// The bytes of the lanes of a mask of four.
+alignas(16) inline constexpr auto bytes_of_four = [] {
+  std::array<std::array<std::uint8_t, 16>, 16> table{};
+  for (unsigned mask = 0; mask < 16; ++mask)
+    for (unsigned lane = 0, n = 0; lane < 4; ++lane)
+      if ((mask >> lane & 1U) != 0)
+        for (unsigned byte = 0; byte < 4; ++byte) table[mask][n++] = static_cast<std::uint8_t>(4 * lane + byte);
+  return table;
+}();
+
+/// The lanes of the mask one after another, and anything behind them.
+template <class Tag>
+HWY_INLINE hn::Vec<Tag> compress(Tag tag, hn::Vec<Tag> v, hn::Mask<Tag> some) {
+  constexpr int width = Brick<Tag>::lanes;
+  if constexpr (width == 8 || width == 4) {
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(tag, some, bits);
+    if constexpr (width == 8) {
+      const hn::RebindToUnsigned<Tag> numbers;
+      HWY_ALIGN static constexpr std::uint32_t shifts[8] = {0, 4, 8, 12, 16, 20, 24, 28};
+      const auto packed = hn::Set(numbers, lanes_of_eight[bits[0]]);
+      const auto places = hn::And(hn::Shr(packed, hn::Load(numbers, shifts)), hn::Set(numbers, 7));
+      return hn::TableLookupLanes(v, hn::IndicesFromVec(tag, places));
+    } else {
+      const hn::Repartition<std::uint8_t, Tag> bytes;
+      return hn::BitCast(
+          tag, hn::TableLookupBytes(hn::BitCast(bytes, v), hn::Load(bytes, bytes_of_four[bits[0] & 15U].data())));
+    }
+  } else {
+    return hn::Compress(v, some);
+  }
+}
+
 /// Stores the lanes of the mask one after another, and leaves garbage behind them. Returns their number. Compressing
 /// into a register and storing all of it is faster than a masked store to memory.
 template <class Tag, class Lanes, class Mask>
 HWY_INLINE std::size_t store_some(Lanes v, Mask some, Tag tag, hn::TFromD<Tag>* to) {
-  hn::StoreU(hn::Compress(v, some), tag, to);
+  hn::StoreU(compress(tag, v, some), tag, to);
   return hn::CountTrue(tag, some);
-}
-
-/// Collects the places of the candidates that pass, in their order.
-inline HWY_NOINLINE std::size_t pick(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y,
-                                     const float* HWY_RESTRICT z, std::size_t count, const BoxTest& box,
-                                     std::int32_t* HWY_RESTRICT out) {
-  std::size_t n = 0;
-  auto place = hn::Iota(di, 0);
-  const auto step = hn::Set(di, lanes);
-  for (std::size_t i = 0; i < count; i += lanes, place = hn::Add(place, step)) {
-    const auto near = near_box({hn::Load(d, x + i), hn::Load(d, y + i), hn::Load(d, z + i)}, box, count - i);
-    n += store_some(place, hn::RebindMask(di, near), di, out + n);
-  }
-  return n;
 }
 
 /// Values of a candidate are kept in records of a multiple of four.

@@ -9,103 +9,21 @@
 //
 #include <hwy/highway.h>
 //
-#include "splat/bricks-inl.hpp"
+#include "splat/particle_bricks-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace grainvdb {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// (1-r)³(1+3r) of a candidate at the brick's voxels, 0 outside the support. The factored form never turns positive
-/// outside.
-HWY_INLINE V weight(const Voxels& at, float x, float y, float z) {
-  const V one = hn::Set(d, 1.0F), three = hn::Set(d, 3.0F);
-  const V dx = hn::Sub(at.x, hn::Set(d, x)), dy = hn::Sub(at.y, hn::Set(d, y)), dz = hn::Sub(at.z, hn::Set(d, z));
-  const V r2 = hn::Min(hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz))), one);
-  const V r = hn::Sqrt(r2);
-  const V p = hn::Sub(one, r);
-  return hn::Mul(hn::Mul(hn::Mul(p, p), p), hn::MulAdd(three, r, one));
-}
-
-/// weights[k][lane] of candidate chosen[k]. Returns their sum.
-HWY_NOINLINE V weigh(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z,
-                     const std::int32_t* HWY_RESTRICT chosen, std::size_t count, Voxels at,
-                     float* HWY_RESTRICT weights) {
-  V sum = hn::Zero(d);
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto i = static_cast<std::size_t>(chosen[k]);
-    const V w = weight(at, x[i], y[i], z[i]);
-    sum = hn::Add(sum, w);
-    hn::Store(w, d, weights + k * lanes);
-  }
-  return sum;
-}
-
-/// Weights and sums of few channels in one loop: it saves storing the weights, where with more channels the square root
-/// would wait for the sums.
-template <int channels>
-HWY_NOINLINE void weigh_and_sum(const Picked& near, const float* HWY_RESTRICT q,
-                                const std::int32_t* HWY_RESTRICT chosen, std::size_t count, Voxels at,
-                                float* HWY_RESTRICT plain, float* HWY_RESTRICT sums) {
-  const float *HWY_RESTRICT x = near.x.data(), *HWY_RESTRICT y = near.y.data(), *HWY_RESTRICT z = near.z.data();
-  V all = hn::Zero(d);
-  V s[channels];
-#pragma GCC unroll 4
-  for (int c = 0; c < channels; ++c) s[c] = hn::Zero(d);
-  for (std::size_t k = 0; k < count; ++k) {
-    const auto i = static_cast<std::size_t>(chosen[k]);
-    const V w = weight(at, x[i], y[i], z[i]);
-    all = hn::Add(all, w);
-#pragma GCC unroll 4
-    for (int c = 0; c < channels; ++c)
-      s[c] = hn::MulAdd(w, hn::Set(d, q[i * record_stride(channels) + static_cast<std::size_t>(c)]), s[c]);
-  }
-  hn::Store(all, d, plain);
-#pragma GCC unroll 4
-  for (int c = 0; c < channels; ++c) hn::Store(s[c], d, sums + c * lanes);
-}
-using WeighAndSum = void (*)(const Picked&, const float*, const std::int32_t*, std::size_t, Voxels, float*, float*);
-constexpr std::array<WeighAndSum, 5> weigh_and_sum_of{nullptr, weigh_and_sum<1>, weigh_and_sum<2>, weigh_and_sum<3>,
-                                                      weigh_and_sum<4>};
-
 /// Copies the lanes of a brick to their voxels.
+template <class Tag>
 HWY_INLINE void put(const float* HWY_RESTRICT lane, const VoxelBox& brick, float* HWY_RESTRICT voxels) {
-  for (int i = 0; i < brick_x; ++i)
-    for (int j = 0; j < brick_y; ++j)
-      std::memcpy(voxels + (brick.x + i) * 64 + (brick.y + j) * 8 + brick.z, lane + (i * brick_y + j) * brick_z,
-                  brick_z * sizeof(float));
-}
-
-void SumBrick(const LeafSplat& leaf, const VoxelBox& brick, LeafSums& out) {
-  const float h = leaf.voxel;
-  const Picked& near = out.near;
-  const auto half = [&](int edge) { return 0.5F * h * static_cast<float>(edge - 1); };
-  const auto middle = [&](int first, int edge) { return h * (static_cast<float>(first) - 3.5F) + half(edge); };
-  const BoxTest test{{middle(brick.x, brick_x), middle(brick.y, brick_y), middle(brick.z, brick_z)},
-                     {half(brick_x), half(brick_y), half(brick_z)},
-                     1.0F};
-  std::int32_t* const chosen = out.chosen.data();
-  const std::size_t m = pick(near.x.data(), near.y.data(), near.z.data(), near.count, test, chosen);
-  const Voxels at = brick_voxels(brick, h);
-  HWY_ALIGN float plain[lanes];
-  HWY_ALIGN float sums[widest * lanes];
-  const auto deliver = [&](int first, int count) {
-    for (int c = 0; c < count; ++c) put(sums + c * lanes, brick, out.sums.data() + (first + c) * leaf_size);
-  };
-  if (const auto channels = static_cast<std::size_t>(leaf.channels); channels < weigh_and_sum_of.size()) {
-    weigh_and_sum_of[channels](near, out.values.data(), chosen, m, at, plain, sums);
-    deliver(0, leaf.channels);
-  } else {
-    float* const weights = out.weights.data();
-    hn::Store(weigh(near.x.data(), near.y.data(), near.z.data(), chosen, m, at, weights), d, plain);
-    for (int first = 0; first < leaf.channels; first += widest) {
-      const int now = leaf.channels - first < widest ? leaf.channels - first : widest;
-      sum_of(static_cast<std::size_t>(now), leaf.stride)(weights, out.values.data() + first, leaf.stride, chosen, m,
-                                                         sums);
-      deliver(first, now);
-    }
-  }
-  put(plain, brick, out.plain.data());
+  using B = Brick<Tag>;
+  for (int i = 0; i < B::x; ++i)
+    for (int j = 0; j < B::y; ++j)
+      std::memcpy(voxels + (brick.x + i) * 64 + (brick.y + j) * 8 + brick.z, lane + (i * B::y + j) * B::z,
+                  B::z * sizeof(float));
 }
 
 bool any_active(const LeafMask& active, const VoxelBox& box, int nx, int ny, int nz) {
@@ -116,54 +34,155 @@ bool any_active(const LeafMask& active, const VoxelBox& box, int nx, int ny, int
   return any != 0;
 }
 
-/// Brings the values of a block's candidates together: they are read once for each of its bricks.
-void copy_values(const LeafSplat& leaf, const Picked& near, float* HWY_RESTRICT to) {
-  const hn::CappedTag<float, 4> d4;  // records are padded to four
-  for (std::size_t k = 0; k < near.count; ++k, to += leaf.stride) {
-    const float* HWY_RESTRICT from = leaf.values + static_cast<std::size_t>(near.at[k]) * leaf.stride;
-    std::size_t c = 0;
-    for (; c + lanes <= leaf.stride; c += lanes) hn::StoreU(hn::LoadU(d, from + c), d, to + c);
-    for (; c < leaf.stride; c += hn::Lanes(d4)) hn::StoreU(hn::LoadU(d4, from + c), d4, to + c);
+/// The bricks of a block, in the order of the lists of their candidates.
+template <class Tag, class F>
+HWY_INLINE void for_each_brick(const VoxelBox& box, const F& f) {
+  using B = Brick<Tag>;
+  std::size_t n = 0;
+  for (int x = 0; x < block; x += B::x)
+    for (int y = 0; y < block; y += B::y)
+      for (int z = 0; z < block; z += B::z) f(n++, VoxelBox{box.x + x, box.y + y, box.z + z});
+}
+
+/// Squared distances along one axis from the bricks of a block, which are `size` voxels long.
+template <int size>
+struct Beyond {
+  static constexpr int count = block / size;
+  Beyond(int first, float h) {
+    const float half = 0.5F * h * static_cast<float>(size - 1);
+    reach = hn::Set(d, half);
+    for (int b = 0; b < count; ++b) middle[b] = hn::Set(d, h * (static_cast<float>(first + b * size) - 3.5F) + half);
+  }
+  HWY_INLINE void operator()(V x, V* squared) const {
+    for (int b = 0; b < count; ++b) {
+      const V beyond = hn::Max(hn::Sub(hn::Abs(hn::Sub(x, middle[b])), reach), hn::Zero(d));
+      squared[b] = hn::Mul(beyond, beyond);
+    }
+  }
+  V reach;
+  V middle[count];
+};
+
+/// The candidates of every brick of a block: places in the leaf's list, as many more as weigh_and_sum looks ahead.
+template <class Tag>
+HWY_NOINLINE void pick_bricks(const Picked& near, const VoxelBox& box, float h,
+                              std::array<Grow<std::int32_t>, LeafSums::most_bricks>& lists, std::size_t* counts) {
+  using B = Brick<Tag>;
+  const Beyond<B::x> along_x(box.x, h);
+  const Beyond<B::y> along_y(box.y, h);
+  const Beyond<B::z> along_z(box.z, h);
+  constexpr int bricks = along_x.count * along_y.count * along_z.count;
+  std::int32_t* to[bricks];
+  for (std::size_t b = 0; b < bricks; ++b) to[b] = lists[b].room(near.count + look_ahead);
+  const V one = hn::Set(d, 1.0F);
+  for (std::size_t i = 0; i < near.count; i += lanes) {
+    V x[block], y[block], z[block];
+    along_x(hn::Load(d, near.x.data() + i), x);
+    along_y(hn::Load(d, near.y.data() + i), y);
+    along_z(hn::Load(d, near.z.data() + i), z);
+    const auto place = hn::Load(di, near.at.data() + i);
+    const auto valid = hn::FirstN(d, near.count - i);
+    int b = 0;
+    for (int ix = 0; ix < along_x.count; ++ix)
+      for (int iy = 0; iy < along_y.count; ++iy) {
+        const V xy = hn::Add(x[ix], y[iy]);
+        for (int iz = 0; iz < along_z.count; ++iz, ++b) {
+          const auto near_it = hn::And(hn::Lt(hn::Add(xy, z[iz]), one), valid);
+          to[b] += store_some(place, hn::RebindMask(di, near_it), di, to[b]);
+        }
+      }
+  }
+  for (std::size_t b = 0; b < bricks; ++b) {
+    counts[b] = static_cast<std::size_t>(to[b] - lists[b].data());
+    for (std::size_t k = 0; k < look_ahead; ++k) to[b][k] = 0;
   }
 }
 
-void SplatLeaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
+template <class Tag>
+void SumBrick(const LeafSplat& leaf, const Sources& from, const std::int32_t* chosen, std::size_t count,
+              const VoxelBox& brick, LeafSums& out) {
+  constexpr Tag tag;
+  constexpr int width = Brick<Tag>::lanes;
+  HWY_ALIGN float sums[(1 + widest) * width];
+  const auto deliver = [&](const float* from_lanes, int first, int channels) {
+    for (int c = 0; c < channels; ++c)
+      put<Tag>(from_lanes + c * width, brick, out.sums.data() + (first + c) * leaf_size);
+  };
+  const auto at = brick_voxels_of(tag, brick, leaf.voxel);
+  if (leaf.channels <= most_at_once) {
+    weigh_and_sum_of<Tag>[static_cast<std::size_t>(leaf.channels)](from, chosen, count, at, sums);
+    put<Tag>(sums, brick, out.plain.data());
+    deliver(sums + width, 0, leaf.channels);
+  } else if constexpr (width == lanes) {
+    float* const weights = out.weights.room(count * lanes);
+    hn::Store(weigh(from, chosen, count, at, weights), d, sums);
+    put<Tag>(sums, brick, out.plain.data());
+    for (int first = 0; first < leaf.channels; first += widest) {
+      const int now = leaf.channels - first < widest ? leaf.channels - first : widest;
+      sum_of(static_cast<std::size_t>(now), leaf.stride)(weights, from.values + first, leaf.stride, chosen, count,
+                                                         sums);
+      deliver(sums, first, now);
+    }
+  }
+}
+
+template <class Tag>
+void SplatBlocks(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
+  using B = Brick<Tag>;
   out.sums.room(static_cast<std::size_t>(leaf.channels) * leaf_size);
   out.plain.room(leaf_size);
   const LeafCandidates& all = *leaf.candidates;
+  const Sources from{all.x.data(), all.y.data(), all.z.data(), leaf.values, leaf.stride};
   for (int bx = 0; bx < 8; bx += block)
     for (int by = 0; by < 8; by += block)
       for (int bz = 0; bz < 8; bz += block) {
-        if (!any_active(active, {bx, by, bz}, block, block, block)) continue;
-        pick_near(all, {bx, by, bz, block}, leaf.voxel, out.near);
-        float* const values = out.values.room(out.near.count * leaf.stride);
-        copy_values(leaf, out.near, values);
-        out.chosen.room(out.near.count);
-        out.weights.room(out.near.count * lanes);
-        for (int x = bx; x < bx + block; x += brick_x)
-          for (int y = by; y < by + block; y += brick_y)
-            for (int z = bz; z < bz + block; z += brick_z)
-              if (any_active(active, {x, y, z}, brick_x, brick_y, brick_z)) SumBrick(leaf, {x, y, z}, out);
+        const VoxelBox box{bx, by, bz, block};
+        if (!any_active(active, box, block, block, block)) continue;
+        pick_near(all, box, leaf.voxel, out.near);
+        std::size_t counts[LeafSums::most_bricks];
+        pick_bricks<Tag>(out.near, box, leaf.voxel, out.chosen, counts);
+        for_each_brick<Tag>(box, [&](std::size_t b, const VoxelBox& brick) {
+          if (any_active(active, brick, B::x, B::y, B::z))
+            SumBrick<Tag>(leaf, from, out.chosen[b].data(), counts[b], brick, out);
+        });
       }
 }
 
-void ScaleSums(const ScaledSum& from, const LeafMask& active, double* HWY_RESTRICT to) {
-  const hn::CappedTag<double, 8> d8;
-  const hn::Rebind<float, decltype(d8)> f8;
-  const auto scale = hn::Set(d8, from.unit), mean = hn::Set(d8, from.reference);
-  for (std::size_t v = 0; v < leaf_size; v += hn::Lanes(d8)) {
-    const auto about = hn::Mul(scale, hn::PromoteTo(d8, hn::LoadU(f8, from.sum + v)));
-    const auto value = hn::MulAdd(mean, hn::PromoteTo(d8, hn::LoadU(f8, from.weight + v)), about);
+void SplatLeaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
+  if constexpr (lanes == 16)
+    if (leaf.channels <= most_at_once && leaf.halves) return SplatBlocks<hn::Half<D>>(leaf, active, out);
+  SplatBlocks<D>(leaf, active, out);
+}
+
+constexpr hn::CappedTag<double, 8> doubles;
+constexpr hn::Rebind<float, decltype(doubles)> singles;
+HWY_INLINE void store_as(hn::Vec<decltype(doubles)> v, double* to) {
+  hn::StoreU(v, doubles, to);
+}
+HWY_INLINE void store_as(hn::Vec<decltype(doubles)> v, float* to) {
+  hn::StoreU(hn::DemoteTo(singles, v), singles, to);
+}
+
+template <class T>
+HWY_INLINE void scale_to(const ScaledSum& from, const LeafMask& active, T* HWY_RESTRICT to) {
+  const auto scale = hn::Set(doubles, from.unit), mean = hn::Set(doubles, from.reference);
+  for (std::size_t v = 0; v < leaf_size; v += hn::Lanes(doubles)) {
+    auto value = hn::Mul(scale, hn::PromoteTo(doubles, hn::LoadU(singles, from.sum + v)));
+    if (from.reference != 0)
+      value = hn::MulAdd(mean, hn::PromoteTo(doubles, hn::LoadU(singles, from.weight + v)), value);
     const std::uint8_t bits[8] = {static_cast<std::uint8_t>(active.words[v / 64] >> (v % 64))};
-    hn::StoreU(hn::IfThenElseZero(hn::LoadMaskBits(d8, bits), value), d8, to + v);
+    store_as(hn::IfThenElseZero(hn::LoadMaskBits(doubles, bits), value), to + v);
   }
+}
+void ScaleToDouble(const ScaledSum& from, const LeafMask& active, double* to) {
+  scale_to(from, active, to);
+}
+void ScaleToSingle(const ScaledSum& from, const LeafMask& active, float* to) {
+  scale_to(from, active, to);
 }
 
 void Narrow(const double* HWY_RESTRICT from, std::size_t count, float* HWY_RESTRICT to) {
-  const hn::CappedTag<double, 8> d8;
-  const hn::Rebind<float, decltype(d8)> f8;
-  for (std::size_t v = 0; v < count; v += hn::Lanes(d8))
-    hn::StoreU(hn::DemoteTo(f8, hn::LoadU(d8, from + v)), f8, to + v);
+  for (std::size_t v = 0; v < count; v += hn::Lanes(doubles)) store_as(hn::LoadU(doubles, from + v), to + v);
 }
 
 LeafMask FaintVoxels(const float* sum, float least, const float* plain, float rim, float enough,
@@ -210,23 +229,6 @@ void CountBelow(const float* values, std::size_t stride, std::size_t count, cons
   for (; c < stride; c += hn::Lanes(d4)) CountPart(values + c, stride, count, d4, limit + c, few + c);
 }
 
-template <class Tag>
-void SumTermsPart(const ExactTerm* HWY_RESTRICT terms, std::size_t count, std::size_t c, Tag tag, double* sums) {
-  const hn::Rebind<float, Tag> floats;
-  auto sum = hn::Zero(tag);
-  for (std::size_t k = 0; k < count; ++k)
-    sum = hn::MulAdd(hn::Set(tag, terms[k].w), hn::PromoteTo(tag, hn::LoadU(floats, terms[k].record + c)), sum);
-  hn::StoreU(sum, tag, sums + c);
-}
-
-void SumTerms(const ExactTerm* terms, std::size_t count, std::size_t stride, double* sums) {
-  const hn::CappedTag<double, 8> d8;
-  const hn::CappedTag<double, 2> d2;  // records are padded to four
-  std::size_t c = 0;
-  for (; c + hn::Lanes(d8) <= stride; c += hn::Lanes(d8)) SumTermsPart(terms, count, c, d8, sums);
-  for (; c < stride; c += hn::Lanes(d2)) SumTermsPart(terms, count, c, d2, sums);
-}
-
 const char* TargetName() {
   return hwy::TargetName(HWY_TARGET);
 }
@@ -239,18 +241,21 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace grainvdb {
 HWY_EXPORT(SplatLeaf);
-HWY_EXPORT(ScaleSums);
+HWY_EXPORT(ScaleToDouble);
+HWY_EXPORT(ScaleToSingle);
 HWY_EXPORT(Narrow);
 HWY_EXPORT(FaintVoxels);
 HWY_EXPORT(LeastOf);
 HWY_EXPORT(CountBelow);
-HWY_EXPORT(SumTerms);
 HWY_EXPORT(TargetName);
 void splat_leaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
   HWY_DYNAMIC_DISPATCH(SplatLeaf)(leaf, active, out);
 }
 void scale_sums(const ScaledSum& from, const LeafMask& active, double* to) {
-  HWY_DYNAMIC_DISPATCH(ScaleSums)(from, active, to);
+  HWY_DYNAMIC_DISPATCH(ScaleToDouble)(from, active, to);
+}
+void scale_sums(const ScaledSum& from, const LeafMask& active, float* to) {
+  HWY_DYNAMIC_DISPATCH(ScaleToSingle)(from, active, to);
 }
 void narrow(const double* from, std::size_t count, float* to) {
   HWY_DYNAMIC_DISPATCH(Narrow)(from, count, to);
@@ -264,9 +269,6 @@ float least_of(const float* values, const LeafMask& active) {
 }
 void count_below(const float* values, std::size_t stride, std::size_t count, const float* limit, float* few) {
   HWY_DYNAMIC_DISPATCH(CountBelow)(values, stride, count, limit, few);
-}
-void sum_terms(const ExactTerm* terms, std::size_t count, std::size_t stride, double* sums) {
-  HWY_DYNAMIC_DISPATCH(SumTerms)(terms, count, stride, sums);
 }
 const char* splat_target() {
   return HWY_DYNAMIC_DISPATCH(TargetName)();

@@ -33,9 +33,6 @@ namespace grainvdb {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Squared distances carry the rounding of three positions (2e-7 each, in units of the cutoff) and of their squares.
-constexpr float margin = 4e-6F;
-
 void ScanCell(const CellScan& cell, float half, LeafCandidates& out) {
   const hn::RebindToUnsigned<D> du;
   const V scale = hn::Set(d, cell.scale), reach = hn::Set(d, half), zero = hn::Zero(d);
@@ -86,11 +83,6 @@ void PickNear(const LeafCandidates& from, const VoxelBox& box, float h, Picked& 
     n += store_some(place, hn::RebindMask(di, near), di, at + n);
   }
   out.count = n;
-}
-
-std::size_t PickPlaces(const Picked& from, const VoxelBox& box, float h, Grow<std::int32_t>& out) {
-  return pick(from.x.data(), from.y.data(), from.z.data(), from.count, test_of(box, h, 1 + margin),
-              out.room(from.count));
 }
 
 /// Adds the lanes of a brick to a leaf's mask.
@@ -156,7 +148,6 @@ HWY_AFTER_NAMESPACE();
 namespace grainvdb {
 HWY_EXPORT(ScanCell);
 HWY_EXPORT(PickNear);
-HWY_EXPORT(PickPlaces);
 HWY_EXPORT(Cover);
 
 namespace {
@@ -213,8 +204,5 @@ void pick_near(const LeafCandidates& candidates, const VoxelBox& box, float voxe
   HWY_DYNAMIC_DISPATCH(PickNear)(candidates, box, voxel, out);
 }
 
-std::size_t pick_places(const Picked& from, const VoxelBox& box, float voxel, Grow<std::int32_t>& out) {
-  return HWY_DYNAMIC_DISPATCH(PickPlaces)(from, box, voxel, out);
-}
 }  // namespace grainvdb
 #endif

@@ -47,9 +47,6 @@ struct Picked {
 /// Picks those that may lie within the cutoff of a voxel of the box, in their order.
 void pick_near(const LeafCandidates& candidates, const VoxelBox& box, float voxel, Picked& out);
 
-/// Their places in the list alone. Returns how many there are.
-std::size_t pick_places(const Picked& from, const VoxelBox& box, float voxel, Grow<std::int32_t>& out);
-
 /// Which of the leaf's voxels lie within the cutoff of a candidate for certain (`inside`), and which may, by the
 /// precision of the positions (`perhaps`, which includes the first). `voxel` is in units of the cutoff.
 void cover(const LeafCandidates& candidates, float voxel, Picked& scratch, LeafMask& inside, LeafMask& perhaps);

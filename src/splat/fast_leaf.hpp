@@ -2,7 +2,7 @@
 /// The fast particle splat of one leaf, whatever the values that are summed: brick sums in single precision, and sums
 /// in double where those cannot be trusted.
 #include <cstddef>
-#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bin/buckets.hpp"
@@ -11,7 +11,7 @@
 #include "grainvdb/topology.hpp"
 #include "splat/bricks.hpp"
 #include "splat/candidates.hpp"
-#include "splat/grow.hpp"
+#include "splat/exact_terms.hpp"
 #include "splat/records.hpp"
 
 namespace grainvdb {
@@ -21,11 +21,10 @@ struct LeafWork {
   LeafCandidates candidates;
   LeafRecords records;
   LeafSums sums;
-  Picked near;                  // candidates of a block with voxels to be summed again
-  Grow<std::int32_t> places;    // of those near such a voxel
-  std::vector<LeafMask> faint;  // of each channel
-  std::vector<ExactTerm> terms;
+  Picked near;                     // candidates of a block with voxels to be summed again
+  ExactTerms terms;                // of one such voxel
   std::vector<double> exact;       // their sums
+  std::vector<LeafMask> faint;     // of each channel
   std::vector<float> limits, few;  // of each channel
   std::vector<double> values;      // [channel][offset]
 };
@@ -43,16 +42,23 @@ class FastLeafSplat {
 
   /// The sums of one leaf, [channel][offset], 0 where inactive; they lie in `work`.
   const double* run(const Coord& origin, const LeafMask& active, LeafWork& work) const;
+  /// The same in single precision, to the 512 values of each channel.
+  void run(const Coord& origin, const LeafMask& active, LeafWork& work, std::span<float* const> to) const;
 
  private:
   float voxel() const { return static_cast<float>(1 / cutoff_); }
   const float* sum(const LeafWork& work, std::size_t channel) const {
     return work.sums.sums.data() + channel * leaf_size;
   }
-  void scale(const LeafMask& active, LeafWork& work) const;
+  template <class To>
+  void run_to(const Coord& origin, const LeafMask& active, LeafWork& work, const To& to) const;
+  template <class To>
+  void scale(const LeafMask& active, const LeafWork& work, const To& to) const;
   LeafMask find_faint(const LeafMask& active, LeafWork& work) const;
-  void sum_again(const Coord& origin, const LeafMask& active, LeafWork& work) const;
-  void sum_in_double(const Coord& at, std::size_t offset, std::size_t near, LeafWork& work) const;
+  template <class To>
+  void sum_again(const Coord& origin, const LeafMask& active, LeafWork& work, const To& to) const;
+  template <class To>
+  void sum_in_double(const Coord& origin, int offset, LeafWork& work, const To& to) const;
 
   const Lattice& lattice_;
   const LucyKernel& kernel_;

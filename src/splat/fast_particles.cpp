@@ -21,6 +21,20 @@ void splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, cons
   });
 }
 
+SparseField splat_particles_field(FieldMeta meta, const Lattice& lattice, const LucyKernel& kernel,
+                                  const Buckets& buckets, std::shared_ptr<const Topology> topology,
+                                  std::span<const double> q, std::span<const int> weight_of) {
+  const Records records(buckets, q, weight_of);
+  const FastLeafSplat splat(lattice, kernel, buckets, records);
+  meta.components = static_cast<int>(records.channels());
+  SparseField field = SparseField::unset(std::move(meta), std::move(topology), lattice);
+  tbb::enumerable_thread_specific<LeafWork> work;
+  parallel_for(field.topology()->leaf_count(), [&](std::size_t leaf) {
+    splat.run(field.topology()->origin(leaf), field.topology()->mask(leaf), work.local(), field.components_of(leaf));
+  });
+  return field;
+}
+
 LeafBuffers splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
                                  std::shared_ptr<const Topology> topology, std::span<const double> q,
                                  std::span<const int> weight_of) {

@@ -10,6 +10,7 @@
 #include "grainvdb/leaf_buffers.hpp"
 #include "grainvdb/moment.hpp"
 #include "grainvdb/region.hpp"
+#include "grainvdb/sparse_field.hpp"
 #include "splat/leaf_consumer.hpp"
 
 namespace grainvdb {
@@ -42,6 +43,11 @@ void splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, cons
 /// Σ_α q_α W(x - x_α)², in double precision.
 LeafBuffers splat_particle_squares(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
                                    std::shared_ptr<const Topology> topology, std::span<const double> q, int channels);
+
+/// The same sums in a field on grids, one component per channel, 0 where inactive.
+SparseField splat_particles_field(FieldMeta meta, const Lattice& lattice, const LucyKernel& kernel,
+                                  const Buckets& buckets, std::shared_ptr<const Topology> topology,
+                                  std::span<const double> q, std::span<const int> weight_of);
 
 /// Σ_α q_α ∂_j W(x - x_α): channel 3 v + j for value v and axis j. `q` is laid out [point][value].
 LeafBuffers splat_particle_gradients(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,

@@ -6,6 +6,8 @@
 
 #include "bin/buckets.hpp"
 #include "splat/bricks.hpp"
+#include "splat/candidates.hpp"
+#include "splat/records.hpp"
 #include "splat/splat.hpp"
 #include "unit/splat/scene.hpp"
 
@@ -71,6 +73,32 @@ TEST_P(FastParticleSplat, EveryInstructionSetGivesTheSame) {
     expect_equal(q, {-1, -1, -1, -1, -1}, bar);
   }
   hwy::SetSupportedTargetsForTest(0);
+}
+
+TEST_P(FastParticleSplat, BricksOfEitherSizeGiveTheSameSums) {
+  constexpr std::size_t channels = 14;
+  const double reach = scene.cutoff / scene.voxel;
+  const auto q = random_values(count * channels, 30);
+  const Records records(buckets, q, std::vector<int>(channels, -1));
+  for (std::size_t leaf = 0; leaf < topology->leaf_count(); ++leaf) {
+    LeafCandidates candidates;
+    gather_candidates(buckets, topology->origin(leaf), reach, candidates);
+    LeafRecords values;
+    records.gather(topology->origin(leaf), candidates, values);
+    const auto sums = [&](bool halves, LeafSums& out) {
+      splat_leaf({&candidates, values.values.data(), records.stride(), channels, static_cast<float>(1 / reach), halves},
+                 topology->mask(leaf), out);
+    };
+    LeafSums whole, half;
+    sums(false, whole);
+    sums(true, half);
+    topology->mask(leaf).for_each([&](int v) {
+      const auto offset = static_cast<std::size_t>(v);
+      EXPECT_EQ(whole.plain[offset], half.plain[offset]);
+      for (std::size_t c = 0; c < channels; ++c)
+        EXPECT_EQ(whole.sums[c * leaf_size + offset], half.sums[c * leaf_size + offset]);
+    });
+  }
 }
 
 TEST_P(FastParticleSplat, LosesNothingOfASmallVariationAboutALargeMean) {
