@@ -2,6 +2,7 @@
 /// The errors that the library throws. Each carries one complete message: where, what was found, what was
 /// expected and what to do. The library never prints and never exits; the command turns an error into its exit code.
 #include <cstddef>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,9 +35,12 @@ class Error : public std::runtime_error {
  public:
   Error(const Problem& problem, int exit_code);
   int exit_code() const noexcept { return exit_code_; }
+  /// The parts that what() is made of.
+  const Problem& problem() const noexcept { return *problem_; }
 
  private:
   int exit_code_;
+  std::shared_ptr<const Problem> problem_;  // shared: errors are copied, which must not throw
 };
 
 /// Bad usage, or a pipeline file that cannot be run as written (exit code 1).

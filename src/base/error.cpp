@@ -22,7 +22,8 @@ std::string message(const Problem& p) {
 
 }  // namespace
 
-Error::Error(const Problem& problem, int exit_code) : std::runtime_error(message(problem)), exit_code_(exit_code) {}
+Error::Error(const Problem& problem, int exit_code)
+    : std::runtime_error(message(problem)), exit_code_(exit_code), problem_(std::make_shared<Problem>(problem)) {}
 
 IoError::IoError(const std::string& action, const std::string& path, int error_number, const std::string& hint)
     : Error({Location{path},

@@ -96,6 +96,9 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::Success& wanted) {  // --help and --version
     app.exit(wanted, std::cout, std::cerr);
+  } catch (const CLI::RuntimeError& said) {  // the command has said what is wrong
+    std::cout.flush();
+    return said.get_exit_code();
   } catch (const CLI::ParseError& error) {
     return bad_command_line(app, error);
   } catch (const Error& error) {

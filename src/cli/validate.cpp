@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "cli/commands.hpp"
+#include "cli/error_json.hpp"
 #include "cli/open_input.hpp"
 #include "grainvdb/run.hpp"
 
@@ -11,13 +12,16 @@ namespace {
 constexpr const char* footer = R"(Examples:
   grainvdb validate pipelines/shear_cell.yaml
   grainvdb validate pipelines/shear_cell.yaml --no-input --set kernel.cutoff=3e-3
+  grainvdb validate pipelines/shear_cell.yaml --json
 
 Prints 'valid' and exits with 0 only when the pipeline can be run. The first selected frame is read and checked as
-the run will; later frames are not.)";
+the run will; later frames are not. With --json, what is wrong is printed to the standard output by its parts: kind,
+exit_code, file, line, what, found, expected, hint, message; those that do not apply are left out.)";
 
 struct Options {
   PipelineArguments pipeline;
   bool no_input = false;
+  bool json = false;
 };
 
 // The first frame that the run will use.
@@ -32,7 +36,7 @@ void check_first_frame(const Pipeline& pipeline, const Plan& plan, const Lattice
   }
 }
 
-void validate(const Options& options) {
+void check(const Options& options) {
   const Pipeline pipeline = load_pipeline(options.pipeline.file, options.pipeline.overrides);
   const Plan plan = make_plan(pipeline);
   if (!options.no_input) {
@@ -40,7 +44,26 @@ void validate(const Options& options) {
     const Lattice lattice = check_against_input(pipeline, plan, *source);
     check_first_frame(pipeline, plan, lattice, *source);
   }
-  std::cout << "valid\n";
+}
+
+void print(const nlohmann::ordered_json& json) {
+  // Files may hold any bytes; JSON is UTF-8.
+  std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+}
+
+void validate(const Options& options) {
+  if (!options.json) {
+    check(options);
+    std::cout << "valid\n";
+    return;
+  }
+  try {
+    check(options);
+    print({{"valid", true}});
+  } catch (const Error& error) {
+    print({{"valid", false}, {"error", error_json(error)}});
+    throw CLI::RuntimeError(error.exit_code());
+  }
 }
 
 }  // namespace
@@ -51,6 +74,7 @@ void add_validate(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   add_pipeline_arguments(*command, options->pipeline);
   command->add_flag("--no-input", options->no_input, "Do not look at the dumps");
+  command->add_flag("--json", options->json, "Print the verdict as JSON");
   command->footer(footer);
   command->callback([options] { validate(*options); });
 }

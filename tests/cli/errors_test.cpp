@@ -1,5 +1,6 @@
 /// The exit code and the message of each kind of error. `run` and `validate` must agree on all of them.
 #include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
@@ -129,6 +130,36 @@ TEST(Errors, ValidateFindsWhatWouldFailLater) {
   EXPECT_EQ(run_command({"validate", "p.yaml"}, folder.path()).exit_code, 2);
   EXPECT_EQ(run_command({"validate", "p.yaml", "--no-input"}, folder.path()).exit_code, 0);
   EXPECT_EQ(run_command({"validate", "p.yaml", "--no-input", "--set", "kernel.cutoff=0"}, folder.path()).exit_code, 1);
+}
+
+TEST(Errors, ValidateGivesTheVerdictAsJson) {
+  const Folder folder;
+  write_example(folder);
+  const auto verdict = [&](const std::vector<std::string>& options, int exit_code) {
+    std::vector<std::string> arguments{"validate", "p.yaml", "--json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const CommandResult result = run_command(arguments, folder.path());
+    EXPECT_EQ(result.exit_code, exit_code) << result.out;
+    EXPECT_EQ(result.err, "");
+    return nlohmann::json::parse(result.out);
+  };
+  EXPECT_EQ(verdict({}, 0), nlohmann::json({{"valid", true}}));
+  folder.write("p.yaml", with("0.5", "-0.5"));
+  nlohmann::json error{{"kind", "config"}, {"exit_code", 1}, {"file", "p.yaml"}, {"line", 7}};
+  error["what"] = "lattice.voxel is too small";
+  error["found"] = "'-0.5'";
+  error["expected"] = "a number > 0 [length]";
+  error["hint"] = "Numbers are given without their unit, in the unit system of the dump.";
+  error["message"] =
+      "p.yaml:7: lattice.voxel is too small; found '-0.5'; expected a number > 0 [length]. Numbers are given without "
+      "their unit, in the unit system of the dump.";
+  EXPECT_EQ(verdict({}, 1), nlohmann::json({{"valid", false}, {"error", error}}));
+  folder.write("p.yaml", with("0.5", "\xff"));  // not UTF-8
+  EXPECT_EQ(verdict({}, 1)["error"]["kind"], "config");
+  folder.write("p.yaml", with("dump*", "nothing*"));
+  EXPECT_EQ(verdict({}, 2)["error"]["kind"], "input");
+  folder.write("p.yaml", with("cutoff", "cutof"));
+  EXPECT_THAT(verdict({}, 1)["error"]["hint"].get<std::string>(), HasSubstr("Did you mean 'cutoff'?"));
 }
 
 // The dump of step 0 with another first coordinate of particle 1, in a box that is open along x.

@@ -25,6 +25,16 @@ TEST(Error, MessageHasPlaceFaultFoundExpectedAndHint) {
   EXPECT_STREQ(e.what(), "dump.1:12: bad number; found '1.5e'; expected a number. See line 9");
 }
 
+TEST(Error, KeepsItsPartsAlsoInCopies) {
+  const Problem given = problem("bad number", "'1.5e'", "a number", "See line 9");
+  const Error copy = InputError(given);
+  EXPECT_EQ(to_string(copy.problem().where), "dump.1:12");
+  EXPECT_EQ(copy.problem().what, given.what);
+  EXPECT_EQ(copy.problem().found, given.found);
+  EXPECT_EQ(copy.problem().expected, given.expected);
+  EXPECT_EQ(copy.problem().hint, given.hint);
+}
+
 TEST(Error, EmptyPartsAreLeftOut) {
   EXPECT_STREQ(InputError(problem("bad number")).what(), "dump.1:12: bad number");
   Problem nowhere;
