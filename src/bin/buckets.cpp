@@ -46,20 +46,20 @@ std::int32_t cell(double u) {
 
 using Order = std::vector<std::uint32_t>;
 
-// Images of all points before they are sorted, in ascending order of their points.
-struct Unsorted {
-  explicit Unsorted(std::size_t entries)
-      : count(entries), point(std::make_unique_for_overwrite<std::uint32_t[]>(entries)) {
-    for (auto& column : index) column = std::make_unique_for_overwrite<double[]>(entries);
-    for (auto& column : key) column = std::make_unique_for_overwrite<std::int32_t[]>(entries);
-  }
-  std::size_t count;
-  std::unique_ptr<std::uint32_t[]> point;
-  std::array<std::unique_ptr<double[]>, 3> index;
-  std::array<std::unique_ptr<std::int32_t[]>, 3> key;
+// An image of a point. What belongs to one lies together: sorted order jumps from one to another.
+struct Image {
+  Vec3 index;
+  std::uint32_t point;
 };
 
-/// The images of a point: calls f(u, key) with the index position and the cell of each one that is wanted.
+// Images of all points before they are sorted, in ascending order of their points.
+struct Unsorted {
+  explicit Unsorted(std::size_t entries) : count(entries), image(std::make_unique_for_overwrite<Image[]>(entries)) {}
+  std::size_t count;
+  std::unique_ptr<Image[]> image;
+};
+
+/// The images of a point: calls f(u) with the index position of each one that is wanted.
 class PointImages {
  public:
   PointImages(const Lattice& lattice, const Columns3& position, double reach, const std::optional<Region>& cells)
@@ -78,8 +78,7 @@ class PointImages {
             const auto& period = lattice_.period(a);
             u[a] = period ? image[a].u + static_cast<double>(k[a]) * period->count : image[a].u;
           }
-          const Coord key{cell(u[0]), cell(u[1]), cell(u[2])};
-          if (!cells_ || cells_->holds(key)) f(u, key);
+          if (!cells_ || cells_->holds({cell(u[0]), cell(u[1]), cell(u[2])})) f(u);
         }
   }
   bool one_each() const { return !cells_ && !lattice_.period(0) && !lattice_.period(1) && !lattice_.period(2); }
@@ -92,42 +91,41 @@ class PointImages {
 };
 
 Unsorted all_images(const PointImages& images, std::size_t points) {
+  if (images.one_each()) {
+    Unsorted all(points);
+    parallel_for(points, [&](std::size_t p) {
+      images.for_each(p, [&](const Vec3& u) { all.image[p] = {u, static_cast<std::uint32_t>(p)}; });
+    });
+    return all;
+  }
   std::vector<std::size_t> start(points + 1);
-  parallel_for(points, [&](std::size_t p) {
-    if (images.one_each()) {
-      start[p + 1] = 1;
-    } else {
-      images.for_each(p, [&](const Vec3&, const Coord&) { ++start[p + 1]; });
-    }
-  });
+  parallel_for(points, [&](std::size_t p) { images.for_each(p, [&](const Vec3&) { ++start[p + 1]; }); });
   std::partial_sum(start.begin(), start.end(), start.begin());
   if (start.back() > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("too many periodic images");
 
   Unsorted all(start.back());
   parallel_for(points, [&](std::size_t p) {
     std::size_t e = start[p];
-    images.for_each(p, [&](const Vec3& u, const Coord& key) {
-      all.point[e] = static_cast<std::uint32_t>(p);
-      for (int a = 0; a < 3; ++a) {
-        all.index[a][e] = u[a];
-        all.key[a][e] = key[a];
-      }
-      ++e;
-    });
+    images.for_each(p, [&](const Vec3& u) { all.image[e++] = {u, static_cast<std::uint32_t>(p)}; });
   });
   return all;
 }
 
 // The cells along one axis as numbers from 0.
 struct Axis {
-  Axis(const std::int32_t* key, std::size_t entries) {
-    const auto [low, high] = std::minmax_element(key, key + entries);
-    base = *low;
-    count = number(*high) + 1;
+  Axis(std::size_t which, const Unsorted& all) : axis(which) {
+    double least = all.image[0].index[axis], greatest = least;
+    for (std::size_t e = 1; e < all.count; ++e) {
+      least = std::min(least, all.image[e].index[axis]);
+      greatest = std::max(greatest, all.image[e].index[axis]);
+    }
+    base = cell(least);
+    count = static_cast<std::uint64_t>(std::int64_t{cell(greatest)} - base) / leaf_edge + 1;
   }
-  std::uint64_t number(std::int32_t k) const {
-    return static_cast<std::uint64_t>(std::int64_t{k} - base) / static_cast<std::uint64_t>(leaf_edge);
+  std::uint64_t number(const Image& image) const {
+    return static_cast<std::uint64_t>(std::int64_t{cell(image.index[axis])} - base) / leaf_edge;
   }
+  std::size_t axis;
   std::int64_t base = 0;
   std::uint64_t count = 0;
 };
@@ -147,19 +145,17 @@ void counting_sort(std::size_t range, const Key& key, Order& order) {
 // material is spread thinly, digits of 16 bits of one axis after the other keep the memory in proportion to the
 // entries.
 Order by_cell(const Unsorted& all) {
-  const auto& key = all.key;
   Order order(all.count);
   std::iota(order.begin(), order.end(), std::uint32_t{0});
-  const std::array<Axis, 3> axis{Axis(key[0].get(), all.count), Axis(key[1].get(), all.count),
-                                 Axis(key[2].get(), all.count)};
+  const std::array<Axis, 3> axis{Axis(0, all), Axis(1, all), Axis(2, all)};
   const double cells =
       static_cast<double>(axis[0].count) * static_cast<double>(axis[1].count) * static_cast<double>(axis[2].count);
   if (cells <= 1024 + 4.0 * static_cast<double>(order.size())) {
     std::vector<std::uint32_t> number(order.size());
     parallel_for(number.size(), [&](std::size_t e) {
-      number[e] = static_cast<std::uint32_t>((axis[0].number(key[0][e]) * axis[1].count + axis[1].number(key[1][e])) *
-                                                 axis[2].count +
-                                             axis[2].number(key[2][e]));
+      const Image& image = all.image[e];
+      number[e] = static_cast<std::uint32_t>(
+          (axis[0].number(image) * axis[1].count + axis[1].number(image)) * axis[2].count + axis[2].number(image));
     });
     counting_sort(
         static_cast<std::size_t>(cells), [&](std::uint32_t e) { return number[e]; }, order);
@@ -168,7 +164,8 @@ Order by_cell(const Unsorted& all) {
   for (std::size_t a = 3; a-- > 0;)
     for (unsigned shift = 0; shift < 32 && ((axis[a].count - 1) >> shift) != 0; shift += 16)
       counting_sort(
-          std::size_t{1} << 16, [&](std::uint32_t e) { return (axis[a].number(key[a][e]) >> shift) & 0xffff; }, order);
+          std::size_t{1} << 16, [&](std::uint32_t e) { return (axis[a].number(all.image[e]) >> shift) & 0xffff; },
+          order);
   return order;
 }
 
@@ -187,30 +184,27 @@ Buckets bin_points(const Lattice& lattice, const Columns3& position, double reac
   const std::size_t entries = all.count;
   if (entries == 0) return b;
   const Order order = by_cell(all);
-  const auto cell_of = [&](std::size_t k) {
-    const std::uint32_t e = order[k];
-    return Coord{all.key[0][e], all.key[1][e], all.key[2][e]};
-  };
-  b.cells.push_back(cell_of(0));
-  for (std::size_t k = 1; k < entries; ++k) {
-    const Coord c = cell_of(k);
-    if (c == b.cells.back()) continue;
-    b.cells.push_back(c);
-    b.start.push_back(k);
-  }
-  b.start.push_back(entries);
 
   b.point.resize(entries);
   for (auto& column : b.index) column.resize(entries);
   for (auto& column : b.local) column.resize(entries + Buckets::padding);
   parallel_for(entries, [&](std::size_t k) {
-    const std::uint32_t e = order[k];
-    b.point[k] = all.point[e];
-    for (int a = 0; a < 3; ++a) {
-      b.index[a][k] = all.index[a][e];
-      b.local[a][k] = static_cast<float>(all.index[a][e] - (all.key[a][e] + 3.5));
+    constexpr std::size_t ahead = 16;
+    if (k + ahead < entries) __builtin_prefetch(&all.image[order[k + ahead]]);
+    const Image& image = all.image[order[k]];
+    b.point[k] = image.point;
+    for (std::size_t a = 0; a < 3; ++a) {
+      b.index[a][k] = image.index[a];
+      b.local[a][k] = static_cast<float>(image.index[a] - (cell(image.index[a]) + 3.5));
     }
   });
+  for (std::size_t k = 0; k < entries; ++k) {
+    const Coord c{cell(b.index[0][k]), cell(b.index[1][k]), cell(b.index[2][k])};
+    if (k > 0 && c == b.cells.back()) continue;
+    b.cells.push_back(c);
+    if (k > 0) b.start.push_back(k);
+  }
+  b.start.push_back(entries);
   return b;
 }
 

@@ -126,6 +126,13 @@ void SumBrick(const LeafSplat& leaf, const Sources& from, const std::int32_t* ch
   }
 }
 
+/// Asks for the memory of one eighth of every channel's values.
+HWY_INLINE void ask_for(std::span<float* const> to, int eighth) {
+  constexpr int part = leaf_size / 8, line = 64 / sizeof(float);
+  for (const float* values : to)
+    for (int v = 0; v < part; v += line) __builtin_prefetch(values + eighth * part + v, 1, 2);
+}
+
 template <class Tag>
 void SplatBlocks(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
   using B = Brick<Tag>;
@@ -133,10 +140,12 @@ void SplatBlocks(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
   out.plain.room(leaf_size);
   const LeafCandidates& all = *leaf.candidates;
   const Sources from{all.x.data(), all.y.data(), all.z.data(), leaf.values, leaf.stride};
+  int eighth = 0;
   for (int bx = 0; bx < 8; bx += block)
     for (int by = 0; by < 8; by += block)
       for (int bz = 0; bz < 8; bz += block) {
         const VoxelBox box{bx, by, bz, block};
+        ask_for(leaf.to, eighth++);
         if (!any_active(active, box, block, block, block)) continue;
         pick_near(all, box, leaf.voxel, out.near);
         std::size_t counts[LeafSums::most_bricks];

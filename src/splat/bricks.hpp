@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "grainvdb/topology.hpp"
 #include "splat/candidates.hpp"
@@ -22,6 +22,8 @@ struct LeafSplat {
   float voxel = 0;  ///< edge of a voxel in units of the cutoff
   /// Whether to take registers of 512 bits by halves. The sums are the same: what does not reach a voxel adds nothing.
   bool halves = halves_wide_registers();
+  /// Where the 512 values of each channel will go afterwards: asked for while the sums are made. May be empty.
+  std::span<float* const> to = {};
 };
 
 /// Sums of one leaf, and what is needed on the way; reused from leaf to leaf.

@@ -26,32 +26,37 @@ float least(const LeafWork& work, std::size_t channel) {
   return static_cast<float>(part * faint) * work.records.largest[channel];
 }
 
-template <class F>
-void for_each_voxel_of(const VoxelBox& box, const LeafMask& mask, const F& f) {
-  for (int x = box.x; x < box.x + box.edge; ++x)
-    for (int y = box.y; y < box.y + box.edge; ++y)
-      for (int z = box.z; z < box.z + box.edge; ++z)
-        if (const int offset = (x << 6) | (y << 3) | z; mask.test(offset)) f(offset);
+/// The voxels of a mask that lie in a box.
+LeafMask within(const LeafMask& mask, const VoxelBox& box) {
+  std::uint64_t plane = 0;
+  for (int y = box.y; y < box.y + box.edge; ++y)
+    plane |= ((std::uint64_t{1} << box.edge) - 1) << (y * leaf_edge + box.z);
+  LeafMask some;
+  for (auto x = static_cast<std::size_t>(box.x); x < static_cast<std::size_t>(box.x + box.edge); ++x)
+    some.words[x] = mask.words[x] & plane;
+  return some;
 }
 
 }  // namespace
 
 const double* FastLeafSplat::run(const Coord& origin, const LeafMask& active, LeafWork& work) const {
   work.values.resize(channels_ * leaf_size);
-  run_to(origin, active, work, [&](std::size_t c) { return work.values.data() + c * leaf_size; });
+  run_to(origin, active, work, {}, [&](std::size_t c) { return work.values.data() + c * leaf_size; });
   return work.values.data();
 }
 
 void FastLeafSplat::run(const Coord& origin, const LeafMask& active, LeafWork& work, std::span<float* const> to) const {
-  run_to(origin, active, work, [&](std::size_t c) { return to[c]; });
+  run_to(origin, active, work, to, [&](std::size_t c) { return to[c]; });
 }
 
 template <class To>
-void FastLeafSplat::run_to(const Coord& origin, const LeafMask& active, LeafWork& work, const To& to) const {
+void FastLeafSplat::run_to(const Coord& origin, const LeafMask& active, LeafWork& work, std::span<float* const> far,
+                           const To& to) const {
   gather_candidates(buckets_, origin, cutoff_, work.candidates);
   records_.gather(origin, work.candidates, work.records);
-  splat_leaf({&work.candidates, work.records.values.data(), records_.stride(), static_cast<int>(channels_), voxel()},
-             active, work.sums);
+  LeafSplat leaf{&work.candidates, work.records.values.data(), records_.stride(), static_cast<int>(channels_), voxel()};
+  leaf.to = far;
+  splat_leaf(leaf, active, work.sums);
   scale(active, work, to);
   sum_again(origin, active, work, to);
 }
@@ -103,12 +108,10 @@ void FastLeafSplat::sum_again(const Coord& origin, const LeafMask& active, LeafW
     for (int y = 0; y < leaf_edge; y += 4)
       for (int z = 0; z < leaf_edge; z += 4) {
         const VoxelBox block{x, y, z, 4};
-        bool begun = false;
-        for_each_voxel_of(block, any, [&](int offset) {
-          if (!begun) pick_near(work.candidates, block, voxel(), work.near);
-          begun = true;
-          sum_in_double(origin, offset, work, to);
-        });
+        const LeafMask again = within(any, block);
+        if (again.none()) continue;
+        pick_near(work.candidates, block, voxel(), work.near);
+        again.for_each([&](int offset) { sum_in_double(origin, offset, work, to); });
       }
 }
 

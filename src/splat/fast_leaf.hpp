@@ -50,8 +50,10 @@ class FastLeafSplat {
   const float* sum(const LeafWork& work, std::size_t channel) const {
     return work.sums.sums.data() + channel * leaf_size;
   }
+  /// `far`: where the values go if that memory is not in the cache.
   template <class To>
-  void run_to(const Coord& origin, const LeafMask& active, LeafWork& work, const To& to) const;
+  void run_to(const Coord& origin, const LeafMask& active, LeafWork& work, std::span<float* const> far,
+              const To& to) const;
   template <class To>
   void scale(const LeafMask& active, const LeafWork& work, const To& to) const;
   LeafMask find_faint(const LeafMask& active, LeafWork& work) const;
