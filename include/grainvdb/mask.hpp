@@ -27,6 +27,7 @@ enum class Reason : std::uint32_t {
   tensile_stress = 1u << 10,  ///< a principal stress is tensile or zero: Mohr-Coulomb ratio undefined
   negative_temperature = 1u << 11,  ///< the gradient part exceeds the one-pass variance: no T, no δω²
   lone_particles = 1u << 12,        ///< particles are their own mean: T, δω² without self-weight undefined
+  few_blocks = 1u << 13,            ///< undefined without one of the blocks of frames: its standard error undefined
 };
 
 struct ReasonInfo {

@@ -52,6 +52,7 @@ struct Pipeline {
   double cutoff = 0;                            ///< c of the kernel [length]
   std::size_t window = 0;                       ///< frames per time average; 0: all frames in one
   std::size_t window_step = 0;       ///< frames from the beginning of one average to that of the next; 0: as window
+  std::size_t blocks = 10;           ///< of frames, from whose differences standard errors are estimated
   std::vector<std::string> fields;   ///< what to write, in this order
   StageSettings stages;              ///< option values of every stage, defaults filled in
   std::vector<std::string> formats;  ///< of the output: hdf5, vdb

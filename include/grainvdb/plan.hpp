@@ -32,6 +32,8 @@ struct Plan {
   std::vector<Sweep> sweeps;            ///< one, or two where a moment needs a time mean
   std::vector<MomentPtr> means;         ///< the moments whose time means are kept
   std::map<std::string, Halo> halos;    ///< of every moment, by name
+  std::vector<const Stage*> by_block;   ///< stages that standard errors derive again without each block of frames
+  std::vector<MomentPtr> block_sums;    ///< the moments that these need, which are summed by blocks as well
   std::vector<std::string> not_needed;  ///< stages of the registry that this plan does not run
 };
 

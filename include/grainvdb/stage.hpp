@@ -61,9 +61,12 @@ struct Stage {
   /// Option values that are refused together where the stage is asked for; empty where none are.
   std::function<std::optional<OptionConflict>(const StageSettings&)> conflict{};
   std::function<StageNeeds(const StageSettings&)> needs;
-  /// Fills `out` at every active voxel; leaves NaN and a reason in the mask where the field is undefined. Empty for the
-  /// one stage that makes no field of its own: `mask`, the reasons gathered from all others.
+  /// Fills `out` at every active voxel; leaves NaN and a reason in the mask where the field is undefined. Empty where
+  /// something else is needed than time means: for `mask`, the reasons gathered from all stages, and for standard
+  /// errors.
   std::function<void(const StageInput&, SparseField& out)> compute;
+  /// For standard errors: the field among the needs that is derived again without each block of frames.
+  std::string error_of{};
 };
 
 /// The stages that can be asked for, by name.

@@ -27,6 +27,9 @@ class Jackknife {
   /// The error of a component in a leaf at an offset; NaN where the field or one without a block is not defined.
   double error(std::size_t leaf, int component, int offset) const;
 
+  /// Bytes that a leaf of a component takes.
+  static constexpr std::size_t bytes_per_leaf() { return leaf_size * sizeof(Sums); }
+
  private:
   /// Σ (h-1) d², Σ d and Σ (1-1/h) d.
   struct Sums {

@@ -54,6 +54,10 @@ MomentMeans LeaveOneOut::mean_of_others(std::size_t left_out) {
   return {values_.blocks(), frame_counts_, first_channel_};
 }
 
+std::size_t LeaveOneOut::bytes_per_leaf(const std::vector<MomentPtr>& moments) {
+  return static_cast<std::size_t>(channel_count(moments)) * leaf_size * sizeof(double);
+}
+
 LeafMask LeaveOneOut::reached_twice(std::size_t leaf, const std::vector<MomentPtr>& moments) const {
   const Coord& origin = values_.topology()->origin(leaf);
   LeafMask once, twice;

@@ -31,6 +31,9 @@ class LeaveOneOut {
   /// The voxels of a leaf that any of the moments reaches in two blocks at least.
   LeafMask reached_twice(std::size_t leaf, const std::vector<MomentPtr>& moments) const;
 
+  /// Bytes that a leaf takes, apart from the sums.
+  static std::size_t bytes_per_leaf(const std::vector<MomentPtr>& moments);
+
  private:
   MomentMeans mean_of_others(std::size_t left_out);
 

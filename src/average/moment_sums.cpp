@@ -77,7 +77,7 @@ void MomentSums::add(const MomentPtr& moment, const LeafBuffers& part, int chann
 }
 
 void MomentSums::end_frame() {
-  const bool counts = complete_.empty();
+  const bool counts = first_sweep_;
   if (counts) ++frames_;
   parallel_for(all_.size(), [&](std::size_t l) {
     Leaf& leaf = *all_[l];
@@ -94,7 +94,7 @@ void MomentSums::add(const MomentSums& frames) {
       moments.emplace_back(it->second, frames.places_.at(name));
       added_.insert(name);
     }
-  const bool counts = complete_.empty();
+  const bool counts = first_sweep_;
   if (counts) frames_ += frames.frames_;
   std::vector<std::pair<Leaf*, const Leaf*>> leaves;
   for (const auto& [origin, from] : frames.leaves_) leaves.emplace_back(&leaf(origin), from.get());
@@ -125,6 +125,7 @@ void MomentSums::end_sweep(std::size_t frames) {
 }
 
 void MomentSums::end_sweep() {
+  first_sweep_ = false;
   complete_.merge(added_);
   added_.clear();
 }

@@ -117,6 +117,7 @@ class MomentSums {
   std::size_t channels_ = 0;
   std::set<std::string> added_;     // in the current sweep
   std::set<std::string> complete_;  // in earlier sweeps
+  bool first_sweep_ = true;
   std::size_t frames_ = 0;
   std::unordered_map<Coord, std::unique_ptr<Leaf>, CoordHash> leaves_;
   std::vector<Leaf*> all_;  // in the order they came

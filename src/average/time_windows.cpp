@@ -76,6 +76,12 @@ std::size_t WindowSchedule::most_parts() const {
   return most;
 }
 
+std::size_t WindowSchedule::most_blocks() const {
+  std::size_t most = 0;
+  for (const Window& w : windows) most = std::max(most, w.blocks.size());
+  return most;
+}
+
 std::size_t shared_parts(const TimeWindows& w) {
   return w.step > 0 && w.step < w.length ? w.length / cell_of(w) * parts_of_cell(w) : 0;
 }

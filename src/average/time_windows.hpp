@@ -43,6 +43,8 @@ struct WindowSchedule {
   std::size_t frame_count() const;
   /// The most parts of which any window is made.
   std::size_t most_parts() const;
+  /// The most blocks of any window.
+  std::size_t most_blocks() const;
 };
 
 /// The parts of which a window that slides is made; 0 where windows do not overlap.

@@ -20,6 +20,7 @@ const std::vector<ReasonInfo>& reasons() {
       {Reason::negative_temperature, "negative_temperature",
        "gradient part exceeds the one-pass variance: no T, no dw^2"},
       {Reason::lone_particles, "lone_particles", "particles are their own mean: no fluctuation without self-weight"},
+      {Reason::few_blocks, "few_blocks", "no value without one of the blocks of frames: standard error undefined"},
   };
   return all;
 }

@@ -25,6 +25,17 @@ void add_average_keys(Schema& schema) {
     p.window_step = static_cast<std::size_t>(std::get<std::int64_t>(v));
   };
   schema.keys.push_back(step);
+  KeyInfo blocks{"average", "blocks", ValueType::integer,
+                 "Blocks of successive frames that each output time is divided into for standard errors (the fields "
+                 "NAME_error), which hold where a block is longer than motion is correlated. B blocks give an error "
+                 "to 1 part in sqrt(2(B-1))."};
+  blocks.default_value = static_cast<std::int64_t>(Pipeline().blocks);
+  blocks.minimum = 2;
+  blocks.maximum = 1000;
+  blocks.apply = [](Pipeline& p, const ConfigValue& v) {
+    p.blocks = static_cast<std::size_t>(std::get<std::int64_t>(v));
+  };
+  schema.keys.push_back(blocks);
 }
 
 }  // namespace grainvdb

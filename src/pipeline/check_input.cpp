@@ -7,6 +7,7 @@
 #include "grainvdb/run.hpp"
 #include "pipeline/frame_checks.hpp"
 #include "pipeline/material.hpp"
+#include "pipeline/schedule.hpp"
 
 namespace grainvdb {
 namespace {
@@ -77,6 +78,19 @@ void require_columns(const Pipeline& pipeline, const Plan& plan, FrameSource& so
   std::rethrow_exception(first);
 }
 
+/// The last output time may be shorter, but where it is the only one.
+void require_blocks(const Pipeline& pipeline, const Plan& plan, std::size_t frames) {
+  if (plan.by_block.empty()) return;
+  const WindowSchedule schedule = schedule_windows(time_windows(pipeline, plan), frames);
+  const Window& first = schedule.windows.front();
+  if (first.blocks.size() >= pipeline.blocks) return;
+  throw ConfigError({pipeline.location("average.blocks"),
+                     "the output times have too few frames for the standard errors that are wanted",
+                     std::to_string(first.frames.count) + (first.frames.count == 1 ? " frame" : " frames"),
+                     "at least one for each of average.blocks = " + std::to_string(pipeline.blocks) + " blocks",
+                     "Average over more frames, or lower average.blocks (to 2 at least)"});
+}
+
 }  // namespace
 
 void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
@@ -106,6 +120,7 @@ Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSou
     throw ConfigError({pipeline.location("lattice.voxel"), e.what(), {}, {}, {}});
   }
 
+  require_blocks(pipeline, plan, wanted.size());
   require_columns(pipeline, plan, source, wanted);
   return lattice;
 }

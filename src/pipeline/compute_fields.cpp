@@ -2,7 +2,9 @@
 #include <exception>
 #include <iterator>
 #include <memory>
+#include <set>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "grainvdb/run.hpp"
 #include "pipeline/bad_frames.hpp"
 #include "pipeline/clip_fields.hpp"
+#include "pipeline/derive_errors.hpp"
 #include "pipeline/derive_fields.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/stopwatch.hpp"
@@ -67,7 +70,7 @@ class Stream {
         lattice_(lattice),
         region_(region),
         wanted_(select_frames(pipeline.frames, source.frames().size())),
-        schedule_(schedule_windows(time_windows(pipeline), wanted_.size())),
+        schedule_(schedule_windows(time_windows(pipeline, plan), wanted_.size())),
         averager_(pipeline, plan, schedule_, lattice, region) {}
 
   RunReport run();
@@ -124,6 +127,7 @@ RunReport Stream::run() {
   report_.bad_frames = bad_.list(source_);
   report_.channels = channel_count(plan_);
   report_.averaging.push_back(describe(schedule_, pipeline_));
+  if (!plan_.by_block.empty()) report_.averaging.push_back(describe_blocks(schedule_));
   report_.seconds = clock_.seconds();
   report_.wall_seconds = clock_.passed();
   report_.read = source_.counters();
@@ -203,7 +207,13 @@ void Stream::require_material() const {
 }
 
 DerivedFields Stream::derive() const {
-  DerivedFields all = derive_fields(pipeline_, plan_, lattice_, source_.units(), averager_.means());
+  const std::set<std::string> wanted(pipeline_.fields.begin(), pipeline_.fields.end());
+  std::set<std::string> kept = wanted;
+  for (const Stage* stage : plan_.stages)
+    if (!stage->error_of.empty()) kept.insert(stage->error_of);
+  DerivedFields all = derive_fields(pipeline_, plan_.stages, kept, lattice_, source_.units(), averager_.means());
+  derive_errors({pipeline_, plan_, lattice_, source_.units()}, averager_.sums(), averager_.means(), all);
+  std::erase_if(all.fields, [&](const auto& entry) { return !wanted.contains(entry.first); });
   if (region_) return clip_fields(all, *region_, lattice_);
   return all;
 }

@@ -35,20 +35,21 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+}  // namespace
+
 FieldMeta meta_of(const Stage& stage, const UnitSystem& units) {
   return {stage.name,       units.symbol(stage.dimension),
           stage.components, stage.description,
           stage.equation,   stage.additive ? 0.0F : std::numeric_limits<float>::quiet_NaN()};
 }
 
-}  // namespace
-
-DerivedFields derive_fields(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, const UnitSystem& units,
+DerivedFields derive_fields(const Pipeline& pipeline, const std::vector<const Stage*>& stages,
+                            const std::set<std::string>& kept, const Lattice& lattice, const UnitSystem& units,
                             const MomentMeans& means) {
   DerivedFields state{{}, Mask(means.topology()), 0};
   const Input input(pipeline, lattice, means, state);
-  for (std::size_t s = 0; s < plan.stages.size(); ++s) {
-    const Stage& stage = *plan.stages[s];
+  for (std::size_t s = 0; s < stages.size(); ++s) {
+    const Stage& stage = *stages[s];
     if (!stage.compute) continue;
     SparseField field(meta_of(stage, units), means.topology(), lattice);
     state.grids += static_cast<std::size_t>(stage.components);
@@ -56,10 +57,10 @@ DerivedFields derive_fields(const Pipeline& pipeline, const Plan& plan, const La
     state.fields.emplace(stage.name, std::move(field));
 
     std::erase_if(state.fields, [&](const auto& entry) {
-      if (contains(pipeline.fields, entry.first)) return false;
-      return std::none_of(
-          plan.stages.begin() + static_cast<std::ptrdiff_t>(s) + 1, plan.stages.end(),
-          [&](const Stage* later) { return contains(later->needs(pipeline.stages).fields, entry.first); });
+      if (kept.contains(entry.first)) return false;
+      return std::none_of(stages.begin() + static_cast<std::ptrdiff_t>(s) + 1, stages.end(), [&](const Stage* later) {
+        return contains(later->needs(pipeline.stages).fields, entry.first);
+      });
     });
   }
   return state;

@@ -57,6 +57,12 @@ std::vector<std::string> names_of(const std::vector<MomentPtr>& moments) {
   return names;
 }
 
+std::vector<std::string> names_of(const std::vector<const Stage*>& stages) {
+  std::vector<std::string> names;
+  for (const Stage* stage : stages) names.push_back(stage->name);
+  return names;
+}
+
 bool is_written(const Pipeline& pipeline, const Stage& stage) {
   return std::find(pipeline.fields.begin(), pipeline.fields.end(), stage.name) != pipeline.fields.end();
 }
@@ -105,6 +111,42 @@ std::string window_text(const Pipeline& pipeline) {
   return text;
 }
 
+/// Bytes per voxel.
+struct Memory {
+  std::size_t bytes = 0;
+  std::string parts{};
+
+  void add(std::size_t count, std::size_t size, const std::string& what) {
+    if (count == 0) return;
+    bytes += count * size;
+    parts += (parts.empty() ? "" : ", ") + std::to_string(count) + ' ' + what + " of " + std::to_string(size);
+  }
+};
+
+std::size_t channels_of(const std::vector<MomentPtr>& moments) {
+  std::size_t n = 0;
+  for (const MomentPtr& moment : moments) n += static_cast<std::size_t>(moment->channels);
+  return n;
+}
+
+Memory memory_of(const Plan& plan, const TimeWindows& windows) {
+  std::size_t fields = 0, errors = 0, again = 0;
+  for (const Stage* stage : plan.stages) {
+    fields += static_cast<std::size_t>(stage->components);
+    if (!stage->error_of.empty()) errors += static_cast<std::size_t>(stage->components);
+  }
+  for (const Stage* stage : plan.by_block) again += static_cast<std::size_t>(stage->components);
+  Memory memory;
+  memory.add(channels_of(plan.means), 8, "mean channels");
+  memory.add(channels_of(plan.means) * shared_parts(windows), 8, "channels that windows share");
+  memory.add(channels_of(plan.block_sums) * (windows.blocks + 1), 8,
+             "channels of " + counted(windows.blocks, "block") + " and of the mean without one");
+  memory.add(fields, 4, "field components");
+  memory.add(again, 4, "components without a block");
+  memory.add(errors, 24, "error components");
+  return memory;
+}
+
 }  // namespace
 
 std::string describe(const Plan& plan, const Pipeline& pipeline) {
@@ -118,21 +160,16 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
   }
 
   text += "\nstages, in order\n";
-  int components = 0;
-  for (const Stage* stage : plan.stages) {
-    components += stage->components;
+  for (const Stage* stage : plan.stages)
     text += "  " + stage->name + " [" + unit_symbol(pipeline, stage->dimension) + "]: " + stage->equation +
             (is_written(pipeline, *stage) ? "" : " (not written)") + '\n';
-  }
 
-  int channels = 0;
-  for (const MomentPtr& moment : plan.means) channels += moment->channels;
-  const std::size_t sums = 1 + shared_parts(time_windows(pipeline));  // of the window, and of what windows share
-  const std::size_t bytes = 8 * static_cast<std::size_t>(channels) * sums + 4 * static_cast<std::size_t>(components);
+  const Memory memory = memory_of(plan, time_windows(pipeline, plan));
   text += "\ntime means kept: " + joined(names_of(plan.means), "none") + '\n';
-  text += "memory per active voxel: at most " + std::to_string(bytes) + " bytes (" + std::to_string(channels) +
-          " mean channels of 8" + (sums > 1 ? " in " + std::to_string(sums) + " sums" : "") + ", " +
-          std::to_string(components) + " field components of 4)\n";
+  if (!plan.by_block.empty())
+    text += "standard errors: from sums over " + counted(pipeline.blocks, "block") + " of frames; derived again " +
+            "without each: " + joined(names_of(plan.by_block), "none") + '\n';
+  text += "memory per active voxel: at most " + std::to_string(memory.bytes) + " bytes (" + memory.parts + ")\n";
   text += "written: " + joined(pipeline.fields, "nothing") + " as " + joined(pipeline.formats, "nothing") + '\n';
   text += "not read: " + joined(columns_not_read(plan), "nothing is left out") + '\n';
   text += "not needed: " + joined(plan.not_needed, "no stage is left out") + '\n';

@@ -215,6 +215,23 @@ std::map<std::string, Halo> find_halos(const std::vector<const Stage*>& stages, 
   return of_moment;
 }
 
+// What standard errors derive again, and from which sums by blocks.
+void plan_errors(Plan& plan, const StageOrder& order) {
+  std::set<std::string> again;
+  for (const Stage* stage : plan.stages)
+    if (!stage->error_of.empty()) again.insert(stage->error_of);
+  std::set<std::string> moments;
+  for (auto stage = plan.stages.rbegin(); stage != plan.stages.rend(); ++stage) {
+    if (!again.contains((*stage)->name)) continue;
+    plan.by_block.insert(plan.by_block.begin(), *stage);
+    const StageNeeds& needs = order.needs((*stage)->name);
+    again.insert(needs.fields.begin(), needs.fields.end());
+    for (const MomentPtr& moment : needs.moments) moments.insert(moment->name);
+  }
+  for (const MomentPtr& moment : plan.means)
+    if (moments.contains(moment->name)) plan.block_sums.push_back(moment);
+}
+
 }  // namespace
 
 Halo merged(const Halo& a, const Halo& b) {
@@ -255,6 +272,7 @@ Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
     if (!pipeline.select.types.empty()) sweep.columns |= Column::type;
   for (const auto& entry : moments.entries())
     if (kept.contains(entry.moment->name)) plan.means.push_back(entry.moment);
+  plan_errors(plan, stages);
   plan.halos = find_halos(plan.stages, stages, moments);
   for (const Stage& stage : registry.stages())
     if (std::find(plan.stages.begin(), plan.stages.end(), &stage) == plan.stages.end())

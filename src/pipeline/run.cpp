@@ -57,7 +57,7 @@ Writer::Writer(const Pipeline& pipeline, const Plan& plan, FrameSource& source, 
       sinks_(sinks),
       lattice_(check_against_input(pipeline, plan, source)),
       wanted_(select_frames(pipeline.frames, source.frames().size())),
-      schedule_(schedule_windows(time_windows(pipeline), wanted_.size())) {
+      schedule_(schedule_windows(time_windows(pipeline, plan), wanted_.size())) {
   if (schedule_.windows.size() == 1) return;
   series_box_ = box_of_series(pipeline, lattice_, source, wanted_);
   check_dense_size(*series_box_, pipeline);

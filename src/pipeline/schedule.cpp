@@ -42,8 +42,8 @@ class SweepVisits {
 
 }  // namespace
 
-TimeWindows time_windows(const Pipeline& pipeline) {
-  return {pipeline.window, pipeline.window_step, 1};
+TimeWindows time_windows(const Pipeline& pipeline, const Plan& plan) {
+  return {pipeline.window, pipeline.window_step, plan.by_block.empty() ? 1 : pipeline.blocks};
 }
 
 std::vector<Visit> schedule_visits(const WindowSchedule& schedule, std::span<const std::size_t> wanted,
@@ -70,6 +70,15 @@ std::string describe(const WindowSchedule& schedule, const Pipeline& pipeline) {
   if (last.count < pipeline.window)
     text += std::string(times > 1 ? "; the last has only " + std::to_string(last.count) : "") +
             ", fewer than average.window = " + std::to_string(pipeline.window);
+  return text;
+}
+
+std::string describe_blocks(const WindowSchedule& schedule) {
+  const std::size_t blocks = schedule.windows.front().blocks.size();
+  const std::size_t last = schedule.windows.back().blocks.size();
+  std::string text = "standard errors from " + std::to_string(blocks) + " blocks of frames for each output time";
+  if (last < 2) return text + ", but none for the last, which has only one frame";
+  if (last < blocks) text += ", " + std::to_string(last) + " for the last";
   return text;
 }
 

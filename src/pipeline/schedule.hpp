@@ -8,6 +8,7 @@
 
 #include "average/time_windows.hpp"
 #include "grainvdb/pipeline.hpp"
+#include "grainvdb/plan.hpp"
 
 namespace grainvdb {
 
@@ -22,8 +23,8 @@ struct Visit {
   bool ends_window = false;  ///< the last of its window
 };
 
-/// What the pipeline says of output times.
-TimeWindows time_windows(const Pipeline& pipeline);
+/// What the pipeline says of output times, and of blocks where the plan has standard errors.
+TimeWindows time_windows(const Pipeline& pipeline, const Plan& plan);
 
 /// The visits of a schedule for the frames `wanted`.
 std::vector<Visit> schedule_visits(const WindowSchedule& schedule, std::span<const std::size_t> wanted,
@@ -31,6 +32,8 @@ std::vector<Visit> schedule_visits(const WindowSchedule& schedule, std::span<con
 
 /// How a schedule averages its frames, in words; also where it falls short of what the pipeline asks for.
 std::string describe(const WindowSchedule& schedule, const Pipeline& pipeline);
+/// From how many blocks standard errors are, in words; the schedule must be one with blocks.
+std::string describe_blocks(const WindowSchedule& schedule);
 
 /// Those of the frames `wanted` that are in any window.
 std::vector<std::size_t> frames_of(const WindowSchedule& schedule, std::span<const std::size_t> wanted);

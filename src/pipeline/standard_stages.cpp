@@ -1,3 +1,4 @@
+#include "average/register.hpp"
 #include "derive/register.hpp"
 #include "fields/register.hpp"
 #include "grainvdb/stage.hpp"
@@ -25,6 +26,7 @@ const StageRegistry& StageRegistry::standard() {
     register_principal(r);
     register_mohr_coulomb(r);
     register_coaxiality(r);
+    register_standard_errors(r);
     register_bookkeeping(r);
     return r;
   }();

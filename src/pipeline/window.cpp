@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "pipeline/derive_errors.hpp"
 #include "pipeline/wanted_leaves.hpp"
 
 namespace grainvdb {
@@ -10,10 +11,13 @@ namespace {
 
 const std::vector<MomentPtr> no_blocks;
 
-/// What a leaf takes at most: in the parts that are kept for further windows, and in the window.
+/// What a leaf takes at most: in the parts that are kept for further windows, in the window and its blocks, and in what
+/// standard errors are computed with.
 std::size_t bytes_per_leaf(const Plan& plan, const WindowSchedule& schedule) {
-  const std::size_t sums = WindowSums::bytes_per_leaf(plan.means, no_blocks, 0);
-  return schedule.overlapping ? (schedule.most_parts() + 1) * sums : sums;
+  const std::size_t parts =
+      schedule.overlapping ? schedule.most_parts() * WindowSums::bytes_per_leaf(plan.means, no_blocks, 0) : 0;
+  const std::size_t sums = WindowSums::bytes_per_leaf(plan.means, plan.block_sums, schedule.most_blocks());
+  return parts + sums + error_bytes_per_leaf(plan);
 }
 
 }  // namespace
@@ -39,7 +43,7 @@ void WindowAverager::want_leaves(const SweepGroups& groups, const Region& region
 
 void WindowAverager::begin_window() {
   means_.reset();
-  sums_.emplace(plan_.means, no_blocks);
+  sums_.emplace(plan_.means, plan_.block_sums);
 }
 
 std::unique_ptr<FrameContext> WindowAverager::prepare(std::shared_ptr<const Material> material,

@@ -42,6 +42,8 @@ class WindowAverager {
   void end_sweep(const Visit& visit);
   /// Of the sweeps that have ended: a view of the sums, which begin_window takes away.
   const MomentMeans& means() const { return *means_; }
+  /// Those sums, with those over the blocks of the window.
+  const WindowSums& sums() const { return *sums_; }
   void begin_window();
 
  private:

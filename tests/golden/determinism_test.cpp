@@ -30,7 +30,10 @@ std::string original(const std::string& kind, int step) {
 
 /// Every field of the sample shear cell, mean of the five snapshots, read from elsewhere.
 Result run_all_fields(const InputSpec& input) {
-  Pipeline p = shear_cell_pipeline(all_fields());
+  std::vector<std::string> fields = all_fields();
+  for (const std::string& error : all_errors()) fields.push_back(error);
+  Pipeline p = shear_cell_pipeline(fields);
+  p.blocks = steps.size();
   p.input = input;
   p.select.types = {1};
   const auto source = open_dumps(p.input);

@@ -57,7 +57,10 @@ Counts expect_part_of(const Written& part, const Written& whole, const Wanted& w
 
 /// Every field of two snapshots, on voxels so small that the cell is several leaves wide.
 Pipeline everything(const std::string& temperature) {
-  Pipeline p = shear_cell_pipeline(all_fields());
+  std::vector<std::string> fields = all_fields();
+  for (const std::string& error : all_errors()) fields.push_back(error);
+  Pipeline p = shear_cell_pipeline(fields);
+  p.blocks = 2;
   p.select.types = {1};
   p.frames = {{}, 2, 1};
   p.voxel = 0.2e-3;

@@ -9,7 +9,6 @@
 
 #include "grainvdb/error.hpp"
 #include "support/memory_source.hpp"
-#include "support/random.hpp"
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
@@ -18,24 +17,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-/// Frames of a small dilute scene whose particles move on from one to the next.
-Scene moving_scene(std::size_t count) {
-  Scene scene = dilute_scene();
-  Random random(5);
-  const std::size_t given = scene.frames.size();
-  for (std::size_t k = given; k < count; ++k) {
-    Frame f = scene.frames[k % given];
-    f.step = scene.frames.back().step + 10;
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t i = 0; i < f.particles.size(); ++i) {
-        f.particles.position[a][i] += random.uniform(-0.4, 0.4) * scene.voxel;
-        f.particles.velocity[a][i] += random.normal();
-      }
-    scene.frames.push_back(std::move(f));
-  }
-  return scene;
-}
 
 /// Means are summed in another order: a few roundings of double, which reach the float that is stored seldom and then
 /// as one unit of its last place; a difference of two such, as the kinetic stress, can lose a few digits more.
@@ -77,7 +58,7 @@ const std::vector<std::string> one_sweep{"phi", "velocity", "temperature", "cont
 const std::vector<std::string> two_sweeps{"phi", "velocity", "kinetic_stress", "frames"};
 
 TEST(SlidingWindows, EqualTheMeansOverTheirFrames) {
-  const Scene scene = moving_scene(9);
+  const Scene scene = moving(dilute_scene(), 9);
   for (const auto& fields : {one_sweep, two_sweeps}) {
     Pipeline p = scene.pipeline(fields);
     p.window = 4;
@@ -91,7 +72,7 @@ TEST(SlidingWindows, EqualTheMeansOverTheirFrames) {
 }
 
 TEST(SlidingWindows, SumEachFrameOnce) {
-  const Scene scene = moving_scene(9);
+  const Scene scene = moving(dilute_scene(), 9);
   Pipeline p = scene.pipeline(one_sweep);
   p.input.contacts.files = {"memory"};
   p.window = 6;
@@ -107,7 +88,7 @@ TEST(SlidingWindows, SumEachFrameOnce) {
 }
 
 TEST(Windows, LeaveFramesOut) {
-  const Scene scene = moving_scene(9);
+  const Scene scene = moving(dilute_scene(), 9);
   Pipeline p = scene.pipeline(two_sweeps);
   p.window = 2;
   p.window_step = 4;
@@ -124,7 +105,7 @@ std::string provenance(const Result& r, const std::string& name) {
 }
 
 TEST(Windows, SayWhichFramesTheyAverage) {
-  const Scene scene = moving_scene(9);
+  const Scene scene = moving(dilute_scene(), 9);
   Pipeline p = scene.pipeline({"phi"});
   p.window = 2;
   p.window_step = 4;
@@ -146,7 +127,7 @@ TEST(Windows, SayWhichFramesTheyAverage) {
 
 // The sums that sliding windows share are bounded as all sums are: six frames of them are refused where one is not.
 TEST(SlidingWindows, KeepWithinTheMemoryThatIsAllowed) {
-  const Scene scene = moving_scene(9);
+  const Scene scene = moving(dilute_scene(), 9);
   Pipeline p = scene.pipeline({"phi", "velocity"});
   const double leaves = static_cast<double>(run(p, scene.frames).only().field("phi").topology->leaf_count());
   const double sums = leaves * 512 * 8 * 4;  // four channels

@@ -24,7 +24,15 @@ void set_option(Pipeline& pipeline, const std::string& stage, const std::string&
 
 std::vector<std::string> all_fields() {
   std::vector<std::string> names;
-  for (const Stage& s : StageRegistry::standard().stages()) names.push_back(s.name);
+  for (const Stage& s : StageRegistry::standard().stages())
+    if (s.error_of.empty()) names.push_back(s.name);
+  return names;
+}
+
+std::vector<std::string> all_errors() {
+  std::vector<std::string> names;
+  for (const Stage& s : StageRegistry::standard().stages())
+    if (!s.error_of.empty()) names.push_back(s.name);
   return names;
 }
 

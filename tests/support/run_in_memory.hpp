@@ -17,8 +17,10 @@ Pipeline make_pipeline(double voxel, const Vec3& origin, double cutoff, std::vec
 /// Sets an option of a stage; both must exist.
 void set_option(Pipeline& pipeline, const std::string& stage, const std::string& name, OptionValue value);
 
-/// Every field that the standard registry offers, the mask included.
+/// Every field that the standard registry offers, the mask included, but no standard errors.
 std::vector<std::string> all_fields();
+/// Those.
+std::vector<std::string> all_errors();
 
 struct Result {
   Record record;

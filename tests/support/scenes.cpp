@@ -189,4 +189,20 @@ Scene dilute_scene() {
   return {"dilute", snapshots(random, box, grains, 0.0), 0.5, {0.17, -0.31, 0.05}, 0.95, {}};
 }
 
+Scene moving(Scene scene, std::size_t count) {
+  Random random(5);
+  const std::size_t given = scene.frames.size();
+  for (std::size_t k = given; k < count; ++k) {
+    Frame f = scene.frames[k % given];
+    f.step = scene.frames.back().step + 10;
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t i = 0; i < f.particles.size(); ++i) {
+        f.particles.position[a][i] += random.uniform(-0.4, 0.4) * scene.voxel;
+        f.particles.velocity[a][i] += random.normal();
+      }
+    scene.frames.push_back(std::move(f));
+  }
+  return scene;
+}
+
 }  // namespace grainvdb::testing

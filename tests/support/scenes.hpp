@@ -29,6 +29,10 @@ Scene walled_scene();
 /// A periodic box of 21 × 18 × 20 voxels with a few grains and c = 1.9 h: mostly rims.
 Scene dilute_scene();
 
+/// So many frames of a scene: its own, then these again with the particles moved by less than half a voxel and with
+/// other velocities.
+Scene moving(Scene scene, std::size_t count);
+
 /// Appends a particle. Ids must ascend.
 void add_particle(Particles& p, std::int64_t id, int type, const Vec3& x, const Vec3& v, const Vec3& spin,
                   double radius, double mass);

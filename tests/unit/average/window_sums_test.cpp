@@ -114,6 +114,25 @@ TEST(WindowSums, BlocksOfTwoSweeps) {
   EXPECT_EQ(value_at(others.without(1), a, *vector), 1);
 }
 
+// Blocks of moments of the second sweep alone have the frames that they had in the first.
+TEST(WindowSums, BlocksOfTheSecondSweepOnly) {
+  const MomentPtr second = moment("second");
+  WindowSums sums({plain, second}, {second});
+  for (const bool again : {false, true}) {
+    for (const std::size_t block : {0, 1}) {
+      sums.begin_block(block);
+      sums.add(again ? second : plain, buffers({a}, {4}), 0);
+      sums.end_frame();
+    }
+    sums.end_sweep();
+  }
+  const MomentMeans whole = sums.means();
+  LeaveOneOut others(sums, whole);
+  EXPECT_EQ(others.frames(), 2U);
+  EXPECT_EQ(value_at(others.without(0), a, *second), 4);
+  EXPECT_EQ(frames_at(whole, a), 2);
+}
+
 // Frames summed elsewhere give what they give one by one.
 TEST(WindowSums, PartsOfAWindow) {
   std::vector<WindowSums> parts;
