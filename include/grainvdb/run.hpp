@@ -30,6 +30,7 @@ struct RunReport {
   std::size_t active_voxels = 0;  ///< of the last output time
   std::size_t summed_leaves = 0;  ///< of the last output time: where moments were summed
   std::size_t channels = 0;       ///< splatted per frame, over all sweeps
+  double memory = 0;              ///< peak of the run by its MemoryModel [byte]
   std::size_t grids = 0;          ///< OpenVDB grids allocated over the run, the mask apart
   double wall_seconds = 0;
   std::vector<std::pair<std::string, double>> seconds;      ///< by step of the run: read, splat, …; steps overlap

@@ -5,6 +5,8 @@
 #include <locale>
 #include <sstream>
 
+#include <sys/resource.h>
+
 #include "grainvdb/mask.hpp"
 
 namespace grainvdb::cli {
@@ -36,6 +38,13 @@ std::string files_written(const std::vector<std::string>& files) {
          "\n  python3 -c \"import h5py; print(list(h5py.File('" + hdf5 + "')['VTKHDF/PointData']))\"\n";
 }
 
+/// Of this process so far [byte].
+double peak_memory() {
+  struct rusage usage {};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
 }  // namespace
 
 std::string warnings(const RunReport& report) {
@@ -65,6 +74,8 @@ std::string describe(const RunReport& report) {
     between = ", ";
   }
   text << '\n';
+  text << "memory: " << peak_memory() / 1e6 << " MB at most, " << report.memory / 1e6
+       << " MB by the formula of 'grainvdb graph'\n";
   text << "read: " << counted(report.read.files_opened.size(), "file") << ", " << counted(report.read.rows_read, "row")
        << ", " << static_cast<double>(report.read.bytes_read) / 1e6 << " MB\n";
   for (const auto& [reason, count] : report.masked)

@@ -11,7 +11,7 @@
 #include <tbb/task_arena.h>
 
 #include "base/ordered_pipeline.hpp"
-#include "base/parallel.hpp"
+#include "grainvdb/memory_model.hpp"
 #include "grainvdb/run.hpp"
 #include "pipeline/bad_frames.hpp"
 #include "pipeline/clip_fields.hpp"
@@ -29,19 +29,20 @@ using FramePtr = std::unique_ptr<FrameContext>;
 using MaybeFrame = OrFault<Frame>;
 using MaybeReady = OrFault<FramePtr>;
 
-std::size_t frames_in_flight(const Limits& limits) {
-  if (limits.frames_in_flight > 0) return limits.frames_in_flight;
-  constexpr std::size_t most = 8;
-  const std::size_t threads = thread_count();
-  return threads == 1 ? 1 : std::min(threads + 1, most);
-}
-
 std::size_t channel_count(const Plan& plan) {
   std::size_t n = 0;
   for (const Sweep& sweep : plan.sweeps)
     for (const auto& pass : sweep.passes)
       for (const MomentPtr& m : pass) n += static_cast<std::size_t>(m->channels);
   return n;
+}
+
+/// An image of a particle is within reach of the box where it is within one cutoff of it.
+double images_per_particle(const Lattice& lattice, double cutoff) {
+  double images = 1;
+  for (int axis = 0; axis < 3; ++axis)
+    if (const auto& period = lattice.period(axis)) images *= 1 + 2 * cutoff / (period->length * lattice.voxel());
+  return images;
 }
 
 OutputTime time_of(const FrameSource& source, std::span<const std::size_t> frames) {
@@ -71,7 +72,9 @@ class Stream {
         region_(region),
         wanted_(select_frames(pipeline.frames, source.frames().size())),
         schedule_(schedule_windows(time_windows(pipeline, plan), wanted_.size())),
-        averager_(pipeline, plan, schedule_, lattice, region) {}
+        averager_(pipeline, plan, schedule_, lattice, region) {
+    size_.images = images_per_particle(lattice, pipeline.cutoff);
+  }
 
   RunReport run();
 
@@ -80,6 +83,7 @@ class Stream {
   MaybeReady prepare(const Visit& visit, MaybeFrame frame);
   void finish(const Visit& visit, MaybeReady& frame);
   bool is_usable(const Visit& visit, const MaybeReady& frame);
+  void note_size(const FrameContext& frame);
   void show_progress(const Visit& visit);
   OutputTime time_of_window(std::size_t window) const;
   void require_material() const;
@@ -100,6 +104,7 @@ class Stream {
   Progress now_;
   RunReport report_;
   BadFrames bad_;
+  RunSize size_;
   std::size_t material_ = 0;  // particles that select kept, over frames and sweeps
 };
 
@@ -126,6 +131,7 @@ RunReport Stream::run() {
   report_.frames = schedule_.frame_count() - bad_.count();
   report_.bad_frames = bad_.list(source_);
   report_.channels = channel_count(plan_);
+  report_.memory = memory_model(plan_, pipeline_).peak(size_);
   report_.averaging.push_back(describe(schedule_, pipeline_));
   if (!plan_.by_block.empty()) report_.averaging.push_back(describe_blocks(schedule_));
   report_.seconds = clock_.seconds();
@@ -155,7 +161,7 @@ MaybeReady Stream::prepare(const Visit& visit, MaybeFrame frame) {
 void Stream::finish(const Visit& visit, MaybeReady& frame) {
   if (is_usable(visit, frame)) {
     clock_.time("splat", [&] { averager_.add(**frame.value, visit); });
-    material_ += (*frame.value)->particles().size();
+    note_size(**frame.value);
   } else {
     averager_.leave_out(visit);
   }
@@ -169,6 +175,12 @@ bool Stream::is_usable(const Visit& visit, const MaybeReady& frame) {
   if (visit.sweep > 0) std::rethrow_exception(frame.fault);
   bad_.add(visit.frame, frame.fault);
   return false;
+}
+
+void Stream::note_size(const FrameContext& frame) {
+  material_ += frame.particles().size();
+  size_.particles = std::max(size_.particles, static_cast<double>(frame.particles().size()));
+  size_.contacts = std::max(size_.contacts, 0.5 * static_cast<double>(frame.branches().size()));
 }
 
 void Stream::show_progress(const Visit& visit) {
@@ -223,6 +235,7 @@ void Stream::end_window(std::size_t window) {
   DerivedFields derived =
       clock_.time("derive", [&] { return tbb::this_task_arena::isolate([&] { return derive(); }); });
   report_.summed_leaves = averager_.means().topology()->leaf_count();
+  size_.voxels = std::max(size_.voxels, static_cast<double>(report_.summed_leaves) * leaf_size);
   averager_.begin_window();
   report_.active_voxels = derived.mask.topology()->active_voxel_count();
   report_.grids += derived.grids;

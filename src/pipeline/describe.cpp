@@ -3,10 +3,10 @@
 #include <set>
 #include <string>
 
+#include "grainvdb/memory_model.hpp"
 #include "grainvdb/plan.hpp"
 #include "grainvdb/units.hpp"
 #include "pipeline/number.hpp"
-#include "pipeline/schedule.hpp"
 
 namespace grainvdb {
 namespace {
@@ -111,42 +111,6 @@ std::string window_text(const Pipeline& pipeline) {
   return text;
 }
 
-/// Bytes per voxel.
-struct Memory {
-  std::size_t bytes = 0;
-  std::string parts{};
-
-  void add(std::size_t count, std::size_t size, const std::string& what) {
-    if (count == 0) return;
-    bytes += count * size;
-    parts += (parts.empty() ? "" : ", ") + std::to_string(count) + ' ' + what + " of " + std::to_string(size);
-  }
-};
-
-std::size_t channels_of(const std::vector<MomentPtr>& moments) {
-  std::size_t n = 0;
-  for (const MomentPtr& moment : moments) n += static_cast<std::size_t>(moment->channels);
-  return n;
-}
-
-Memory memory_of(const Plan& plan, const TimeWindows& windows) {
-  std::size_t fields = 0, errors = 0, again = 0;
-  for (const Stage* stage : plan.stages) {
-    fields += static_cast<std::size_t>(stage->components);
-    if (!stage->error_of.empty()) errors += static_cast<std::size_t>(stage->components);
-  }
-  for (const Stage* stage : plan.by_block) again += static_cast<std::size_t>(stage->components);
-  Memory memory;
-  memory.add(channels_of(plan.means), 8, "mean channels");
-  memory.add(channels_of(plan.means) * shared_parts(windows), 8, "channels that windows share");
-  memory.add(channels_of(plan.block_sums) * (windows.blocks + 1), 8,
-             "channels of " + counted(windows.blocks, "block") + " and of the mean without one");
-  memory.add(fields, 4, "field components");
-  memory.add(again, 4, "components without a block");
-  memory.add(errors, 24, "error components");
-  return memory;
-}
-
 }  // namespace
 
 std::string describe(const Plan& plan, const Pipeline& pipeline) {
@@ -164,12 +128,13 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
     text += "  " + stage->name + " [" + unit_symbol(pipeline, stage->dimension) + "]: " + stage->equation +
             (is_written(pipeline, *stage) ? "" : " (not written)") + '\n';
 
-  const Memory memory = memory_of(plan, time_windows(pipeline, plan));
   text += "\ntime means kept: " + joined(names_of(plan.means), "none") + '\n';
   if (!plan.by_block.empty())
     text += "standard errors: from sums over " + counted(pipeline.blocks, "block") + " of frames; derived again " +
             "without each: " + joined(names_of(plan.by_block), "none") + '\n';
-  text += "memory per active voxel: at most " + std::to_string(memory.bytes) + " bytes (" + memory.parts + ")\n";
+  text += "peak memory: " + to_string(memory_model(plan, pipeline)) +
+          "\n  for P particles and C contacts a frame with i periodic images each, and V voxels in the leaves that are "
+          "summed\n";
   text += "written: " + joined(pipeline.fields, "nothing") + " as " + joined(pipeline.formats, "nothing") + '\n';
   text += "not read: " + joined(columns_not_read(plan), "nothing is left out") + '\n';
   text += "not needed: " + joined(plan.not_needed, "no stage is left out") + '\n';

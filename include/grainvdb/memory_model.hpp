@@ -1,0 +1,40 @@
+#pragma once
+/// The peak memory of a run as a formula: what frames take on their way, and what the voxels take that are summed.
+#include <cstddef>
+#include <string>
+
+#include "grainvdb/pipeline.hpp"
+#include "grainvdb/plan.hpp"
+
+namespace grainvdb {
+
+/// What a frame and the voxels of a run count.
+struct RunSize {
+  double particles = 0;  ///< of the largest frame, those that count as material
+  double contacts = 0;   ///< of the largest frame
+  double images = 1;     ///< periodic images per particle: ∏ (1 + 2c/L) over the periodic axes
+  double voxels = 0;     ///< of all leaves that are summed: active ones, and the others of their leaves
+};
+
+/// Bytes. The number of frames is not among them: what a run takes does not grow with its length.
+struct MemoryModel {
+  std::size_t frames_in_flight = 1;
+  double fixed = 0;               ///< the program, its libraries and buffers, and the roots of the grids
+  double per_particle = 0;        ///< of each frame in flight
+  double per_particle_image = 0;  ///< and for each image of it
+  double per_contact = 0;
+  double per_contact_image = 0;
+  double per_voxel = 0;  ///< the sums, what one frame keeps, the fields at hand
+
+  double peak(const RunSize& size) const;
+};
+
+/// What is read ahead: limits.frames_in_flight, or else one more than there are threads, 8 at most.
+std::size_t frames_in_flight(const Limits& limits);
+
+MemoryModel memory_model(const Plan& plan, const Pipeline& pipeline);
+
+/// The formula with its numbers.
+std::string to_string(const MemoryModel& model);
+
+}  // namespace grainvdb

@@ -1,0 +1,165 @@
+#include "grainvdb/memory_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "average/window_sums.hpp"
+#include "base/parallel.hpp"
+#include "pipeline/derive_errors.hpp"
+#include "pipeline/schedule.hpp"
+#include "pipeline/splat_groups.hpp"
+
+namespace grainvdb {
+namespace {
+
+// Of a run whose dumps and fields are next to nothing, on x86-64; shared libraries are most of it.
+constexpr double program = 50e6;
+// OpenVDB's root and first internal node.
+constexpr double grid_root = 0.3e6;
+// A leaf of 2 kB of values carries masks, an origin and a pointer.
+constexpr double float_in_grid = 4.25;
+
+constexpr double bucket_entry = 4 + 3 * 8 + 3 * 4;  // point, index, local (Buckets)
+constexpr double half_branch = 9 * 8;               // start, arm, force
+constexpr double branch_plan = 8 + 4;               // how it is integrated, and which one a piece is of
+
+/// Pieces of a contact in the buckets. Its halves make one where its point is exact, and not just as good as a dump's
+/// six digits.
+double pieces(const Pipeline& pipeline, const SplatGroup& group) {
+  const ContactSpec& spec = pipeline.input.contacts;
+  const bool has_point = spec.columns.contains("point") ||
+                         std::find(spec.compute.begin(), spec.compute.end(), "contactPoint") != spec.compute.end();
+  const bool joins = group.moments[0]->line_integral == LineIntegral::adaptive();
+  return has_point || !joins ? 2 : 1;
+}
+
+double column_bytes(ColumnSet columns) {
+  double bytes = 8 + 3 * 8;  // id, position
+  if (columns.has(Column::velocity)) bytes += 3 * 8;
+  if (columns.has(Column::angular_velocity)) bytes += 3 * 8;
+  if (columns.has(Column::radius)) bytes += 8;
+  if (columns.has(Column::mass)) bytes += 8;
+  if (columns.has(Column::type)) bytes += 4;
+  return bytes;
+}
+
+void take_larger(double& a, double b) {
+  a = std::max(a, b);
+}
+
+/// What one sweep keeps of every frame in flight, and of the one that is splatted.
+void add_sweep(const Plan& plan, const Pipeline& pipeline, std::size_t sweep, MemoryModel& model, double& buffered) {
+  const bool reads_all = pipeline.input.on_error == OnError::skip_frame && sweep == 0;
+  double particle = column_bytes(reads_all ? all_columns(plan) : plan.sweeps[sweep].columns);
+  double contact = 0, contact_image = 0, kept = 0;
+  const SweepGroups groups = group_moments(plan, sweep);
+  for (const SweepGroups::Pass& pass : groups.passes) {
+    for (const SplatGroup& group : pass.groups) {
+      kept += 8.0 * group.buffered_channels();
+      const bool ahead = &pass == &groups.passes.front() && group.of_frame_alone();
+      const double values = 8.0 * group.value_count();
+      if (group.kind() == Moment::Kind::contacts) {
+        contact += 2 * (values + branch_plan);
+        contact_image += pieces(pipeline, group) * (bucket_entry + 1 + 4.0 * (3 + group.value_count()));
+      } else if (ahead) {
+        particle += values;
+      }
+    }
+    for (const MomentPtr& m : pass.voxelwise)
+      if (groups.kept.contains(m->name)) kept += 8.0 * m->channels;
+  }
+  if (plan.sweeps[sweep].columns.has(Column::contacts)) contact += 2 * half_branch;
+  take_larger(model.per_particle, particle);
+  take_larger(model.per_particle_image, bucket_entry);
+  take_larger(model.per_contact, contact);
+  take_larger(model.per_contact_image, contact_image);
+  take_larger(buffered, kept);
+}
+
+bool is_wanted(const Pipeline& pipeline, const std::string& field) {
+  return std::find(pipeline.fields.begin(), pipeline.fields.end(), field) != pipeline.fields.end();
+}
+
+/// Components that exist at the same time while fields are derived one after another.
+double components_at_hand(const Plan& plan, const Pipeline& pipeline) {
+  std::vector<std::pair<std::string, int>> alive;
+  int most = 0;
+  for (std::size_t s = 0; s < plan.stages.size(); ++s) {
+    if (!plan.stages[s]->compute) continue;
+    alive.emplace_back(plan.stages[s]->name, plan.stages[s]->components);
+    int now = 0;
+    for (const auto& [name, components] : alive) now += components;
+    most = std::max(most, now);
+    std::set<std::string> needed;
+    for (std::size_t later = s + 1; later < plan.stages.size(); ++later)
+      for (const std::string& name : plan.stages[later]->needs(pipeline.stages).fields) needed.insert(name);
+    std::erase_if(
+        alive, [&](const auto& field) { return !is_wanted(pipeline, field.first) && !needed.contains(field.first); });
+  }
+  return most;
+}
+
+double components_written(const Plan& plan, const Pipeline& pipeline) {
+  int n = 0;
+  for (const Stage* stage : plan.stages)
+    if (is_wanted(pipeline, stage->name)) n += stage->components;
+  return n;
+}
+
+/// Sums of the window, of its blocks and of what windows share, and what standard errors are computed with.
+double sum_bytes(const Plan& plan, const Pipeline& pipeline) {
+  const TimeWindows windows = time_windows(pipeline, plan);
+  const std::size_t shared = shared_parts(windows) * WindowSums::bytes_per_leaf(plan.means, {}, 0);
+  const std::size_t sums = WindowSums::bytes_per_leaf(plan.means, plan.block_sums, windows.blocks);
+  return static_cast<double>(shared + sums + error_bytes_per_leaf(plan)) / leaf_size;
+}
+
+std::string rounded(double bytes) {
+  return std::to_string(std::llround(bytes));
+}
+
+std::string per(const std::string& what, double each, double image) {
+  return what + " (" + rounded(each) + " + " + rounded(image) + " i)";
+}
+
+}  // namespace
+
+std::size_t frames_in_flight(const Limits& limits) {
+  if (limits.frames_in_flight > 0) return limits.frames_in_flight;
+  constexpr std::size_t most = 8;
+  const std::size_t threads = thread_count();
+  return threads == 1 ? 1 : std::min(threads + 1, most);
+}
+
+double MemoryModel::peak(const RunSize& size) const {
+  const double frame = size.particles * (per_particle + per_particle_image * size.images) +
+                       size.contacts * (per_contact + per_contact_image * size.images);
+  return fixed + static_cast<double>(frames_in_flight) * frame + per_voxel * size.voxels;
+}
+
+MemoryModel memory_model(const Plan& plan, const Pipeline& pipeline) {
+  MemoryModel model;
+  model.frames_in_flight = frames_in_flight(pipeline.limits);
+  double buffered = 0;
+  for (std::size_t sweep = 0; sweep < plan.sweeps.size(); ++sweep) add_sweep(plan, pipeline, sweep, model, buffered);
+
+  // Where there are several output times, one is written while frames of the next are splatted and its fields derived.
+  const double at_hand = components_at_hand(plan, pipeline);
+  const double written = pipeline.window > 0 ? components_written(plan, pipeline) : 0;
+  const double mask = 4.0 * (pipeline.window > 0 ? 2 : 1);
+  model.per_voxel =
+      sum_bytes(plan, pipeline) + std::max(buffered, float_in_grid * at_hand) + float_in_grid * written + mask;
+  model.fixed = program + grid_root * (at_hand + written);
+  return model;
+}
+
+std::string to_string(const MemoryModel& model) {
+  std::string frame = per("P", model.per_particle, model.per_particle_image);
+  if (model.per_contact > 0) frame += " + " + per("C", model.per_contact, model.per_contact_image);
+  return rounded(model.fixed / 1e6) + " MB + " + std::to_string(model.frames_in_flight) + " x [" + frame + "] + " +
+         rounded(model.per_voxel) + " V bytes";
+}
+
+}  // namespace grainvdb
