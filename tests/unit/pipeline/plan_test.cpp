@@ -270,13 +270,14 @@ TEST(Describe, SaysHowFramesAreAveraged) {
   Pipeline p = wanting(registry, {"phi"});
   const auto text = [&] { return describe(make_plan(p, registry), p); };
   EXPECT_THAT(text(), HasSubstr("frames: all; averaged over all of them\n"));
-  EXPECT_THAT(text(), HasSubstr("at most 12 bytes (1 mean channels of 8, 1 field"));
+  // A sum and a number of samples in double, a field in float.
+  EXPECT_THAT(text(), HasSubstr(" + 20 V bytes\n"));
   p.window = 1;
   EXPECT_THAT(text(), HasSubstr("frames: all; each by itself\n"));
   p.window = 100;
   p.window_step = 4;
   EXPECT_THAT(text(), HasSubstr("averaged over windows of 100 frames, one every 4 frames\n"));
-  EXPECT_THAT(text(), HasSubstr("at most 212 bytes (1 mean channels of 8 in 26 sums, "));
+  EXPECT_THAT(text(), HasSubstr(" + 440 V bytes\n"));  // 26 sums
 }
 
 TEST(Describe, DrawsTheGraph) {
