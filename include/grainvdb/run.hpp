@@ -27,6 +27,7 @@ struct Progress {
 
 struct RunReport {
   std::size_t frames = 0;         ///< that are in an average
+  std::size_t resumed_at = 0;     ///< frames, over all sweeps, that an interrupted run had done before
   std::size_t active_voxels = 0;  ///< of the last output time
   std::size_t summed_leaves = 0;  ///< of the last output time: where moments were summed
   std::size_t channels = 0;       ///< splatted per frame, over all sweeps
@@ -78,9 +79,25 @@ RunReport compute_fields(const Pipeline& pipeline, const Plan& plan, FrameSource
                          const std::function<void(const Progress&)>& progress = {},
                          const std::optional<Region>& region = {});
 
+/// Where a run notes how far it is, and how often.
+struct CheckpointOptions {
+  /// That of the results. The checkpoint is the folder .grainvdb-checkpoint in it, which is made where there is none
+  /// and removed once the results are complete. Temporary files that an interrupted run left beside it are removed,
+  /// too.
+  std::string output_folder;
+  double interval = 60;  ///< after which the sums are saved with the next frame [s]
+};
+
 /// Runs the whole pipeline into the sinks. One output time is written while the next is computed.
+///
+/// With a checkpoint, a run that ends before its results are complete, in whatever way, is continued by the next one
+/// with the same folder, and the results have the same bytes as without the interruption. Each output time is saved
+/// when it is finished, the sums of the one at hand after each interval. Throws ConfigError where the folder is that of
+/// a run of another version or pipeline, or of other inputs; InputError where it is damaged; IoError where another run
+/// is at work in it.
 RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                        const std::vector<std::unique_ptr<FieldSink>>& sinks,
-                       const std::function<void(const Progress&)>& progress = {});
+                       const std::function<void(const Progress&)>& progress = {},
+                       const std::optional<CheckpointOptions>& checkpoint = {});
 
 }  // namespace grainvdb

@@ -149,7 +149,11 @@ MomentMeans MomentSums::means() const {
     origins.push_back(origin);
     masks.push_back(leaf->mask);
   }
-  LeafBlocks values{std::make_shared<const Topology>(std::move(origins), std::move(masks)), {}};
+  return means(std::make_shared<const Topology>(std::move(origins), std::move(masks)));
+}
+
+MomentMeans MomentSums::means(std::shared_ptr<const Topology> topology) const {
+  LeafBlocks values{std::move(topology), {}};
   std::vector<const double*> frame_counts;
   for (const Coord& origin : values.topology->origins()) {
     const Leaf& leaf = *leaves_.at(origin);

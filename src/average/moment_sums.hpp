@@ -16,6 +16,9 @@
 
 namespace grainvdb {
 
+class ByteReader;
+class ByteWriter;
+
 /// The time means of a window: all moments on one topology. A view of the sums they were formed in, which must outlive
 /// it.
 class MomentMeans {
@@ -87,6 +90,8 @@ class MomentSums {
 
   /// The means of the moments that are complete. A further sweep leaves them alone.
   MomentMeans means() const;
+  /// The same on the leaves that there were when a sweep ended. All must be there still (std::out_of_range).
+  MomentMeans means(std::shared_ptr<const Topology> leaves) const;
 
   /// The frames of the first sweep.
   std::size_t frames() const { return frames_; }
@@ -98,6 +103,11 @@ class MomentSums {
   /// Bytes that `leaves` leaves of sums take.
   std::size_t bytes(std::size_t leaves) const;
   std::size_t leaf_count() const { return leaves_.size(); }
+
+  /// Between two frames.
+  void save(ByteWriter& to) const;
+  /// Into sums of the same moments that nothing was added to.
+  void load(ByteReader& from);
 
  private:
   struct Leaf {

@@ -2,6 +2,8 @@
 /// The sums over the frames of a window and, of the moments whose fields get a standard error, those over each of the
 /// blocks of successive frames that the window is made of.
 #include <cstddef>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "average/moment_sums.hpp"
@@ -41,6 +43,7 @@ class WindowSums {
   /// Ends a sweep over all frames of the window: what it summed is complete, and becomes a mean.
   void end_sweep();
   MomentMeans means() const { return all_.means(); }
+  MomentMeans means(std::shared_ptr<const Topology> leaves) const { return all_.means(std::move(leaves)); }
 
   /// Joins every two successive blocks.
   void join_blocks();
@@ -50,6 +53,10 @@ class WindowSums {
   const std::vector<MomentSums>& blocks() const { return blocks_; }
 
   std::size_t leaf_count() const { return all_.leaf_count(); }
+
+  /// As with MomentSums.
+  void save(ByteWriter& to) const;
+  void load(ByteReader& from);
   /// Bytes that a leaf takes in the sums of a window with so many blocks.
   static std::size_t bytes_per_leaf(const std::vector<MomentPtr>& moments, const std::vector<MomentPtr>& blocked,
                                     std::size_t blocks);

@@ -65,6 +65,7 @@ std::string describe(const RunReport& report) {
   text << std::fixed << std::setprecision(2);
   text << counted(report.frames, "frame") << ", " << counted(report.active_voxels, "active voxel") << ", "
        << counted(report.channels, "channel") << " splatted per frame\n";
+  if (report.resumed_at > 0) text << "resumed: " << counted(report.resumed_at, "frame") << " had been done before\n";
   if (!report.bad_frames.empty()) text << "left out: " << counted(report.bad_frames.size(), "bad frame") << '\n';
   for (const std::string& line : report.averaging) text << "average: " << line << '\n';
   text << "time: " << report.wall_seconds << " s; by step, which overlap:";

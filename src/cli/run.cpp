@@ -22,6 +22,7 @@ constexpr const char* footer = R"(Examples:
   grainvdb run pipelines/shear_cell.yaml --output result --threads 4
   grainvdb run pipelines/shear_cell.yaml --frames -10: --set lattice.voxel=0.8e-3
   grainvdb run pipelines/shear_cell.yaml --set output.fields=[phi,velocity]
+  grainvdb run pipelines/shear_cell.yaml --output result --resume
 
 Files appear under their names only when they are complete. Ctrl-C ends the run after the frame at hand and leaves no
 file; a second Ctrl-C ends it at once and may leave a temporary one.)";
@@ -31,6 +32,8 @@ struct Options {
   std::string output = "output";
   std::string frames;
   std::size_t threads = 0;
+  bool resume = false;
+  double checkpoint_interval = CheckpointOptions{}.interval;
   bool quiet = false;
 };
 
@@ -54,14 +57,18 @@ void run(const Options& options) {
   const auto source = open_input(pipeline, plan);
   const auto sinks = make_sinks(pipeline, options.output);
 
+  std::optional<CheckpointOptions> checkpoint;
+  if (options.resume) checkpoint = CheckpointOptions{options.output, options.checkpoint_interval};
+
   watch_for_interrupts();
   RunReport report;
   {
     ProgressLine line(stderr);
-    report = run_pipeline(pipeline, plan, *source, sinks, [&](const Progress& progress) {
+    const auto show = [&](const Progress& progress) {
       check_for_interrupt();
       if (!options.quiet) line.show(progress);
-    });
+    };
+    report = run_pipeline(pipeline, plan, *source, sinks, show, checkpoint);
   }
   std::cerr << warnings(report);
   if (!options.quiet) std::cout << describe(report);
@@ -81,6 +88,16 @@ void add_run(CLI::App& app) {
   command->add_option("--threads", options->threads, "Threads to use; all processors by default")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
+  CLI::Option* resume = command->add_flag(
+      "--resume", options->resume,
+      "Save the state of the run in the output folder, and go on from there where it was interrupted before");
+  command
+      ->add_option("--checkpoint-interval", options->checkpoint_interval,
+                   "Seconds from one state that is saved to the next")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(resume)
+      ->capture_default_str();
   command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors and warnings");
   command->footer(footer);
   command->callback([options] { run(*options); });

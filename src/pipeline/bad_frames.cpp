@@ -1,5 +1,7 @@
 #include "pipeline/bad_frames.hpp"
 
+#include <cstdint>
+
 namespace grainvdb {
 
 void BadFrames::add(std::size_t frame, const std::exception_ptr& fault) {
@@ -15,6 +17,21 @@ std::vector<BadFrame> BadFrames::list(const FrameSource& source) const {
   for (const auto& [frame, reason] : reasons_)
     all.push_back({source.frames()[frame].file, source.frames()[frame].step, reason});
   return all;
+}
+
+void BadFrames::save(ByteWriter& to) const {
+  to.number(std::uint64_t{reasons_.size()});
+  for (const auto& [frame, reason] : reasons_) {
+    to.number(std::uint64_t{frame});
+    to.text(reason);
+  }
+}
+
+void BadFrames::load(ByteReader& from) {
+  for (std::size_t left = from.count(); left > 0; --left) {
+    const std::size_t frame = from.count();
+    reasons_.emplace(frame, from.text());
+  }
 }
 
 }  // namespace grainvdb

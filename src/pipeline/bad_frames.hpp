@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "grainvdb/error.hpp"
 #include "grainvdb/frame_source.hpp"
 
@@ -39,6 +40,9 @@ class BadFrames {
   void add(std::size_t frame, const std::exception_ptr& fault);
   /// First what the index of the source leaves out.
   std::vector<BadFrame> list(const FrameSource& source) const;
+
+  void save(ByteWriter& to) const;
+  void load(ByteReader& from);
 
  private:
   std::map<std::size_t, std::string> reasons_;  // by index into the source

@@ -19,6 +19,7 @@
 #include "pipeline/derive_fields.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/stopwatch.hpp"
+#include "pipeline/stream.hpp"
 #include "pipeline/window.hpp"
 #include "pipeline/written_box.hpp"
 
@@ -62,7 +63,7 @@ class Stream {
  public:
   Stream(const Pipeline& pipeline, const Plan& plan, FrameSource& source, const std::function<void(OutputFields)>& take,
          const std::function<void(const Progress&)>& progress, const Lattice& lattice,
-         const std::optional<Region>& region)
+         const std::optional<Region>& region, Checkpoint* checkpoint)
       : pipeline_(pipeline),
         plan_(plan),
         source_(source),
@@ -70,6 +71,7 @@ class Stream {
         progress_(progress),
         lattice_(lattice),
         region_(region),
+        checkpoint_(checkpoint),
         wanted_(select_frames(pipeline.frames, source.frames().size())),
         schedule_(schedule_windows(time_windows(pipeline, plan), wanted_.size())),
         averager_(pipeline, plan, schedule_, lattice, region) {
@@ -90,6 +92,11 @@ class Stream {
   DerivedFields derive() const;
   void end_window(std::size_t window);
 
+  void resume();
+  void save_progress();
+  void save(ByteWriter& to) const;
+  void load(ByteReader& from);
+
   const Pipeline& pipeline_;
   const Plan& plan_;
   FrameSource& source_;
@@ -97,12 +104,14 @@ class Stream {
   const std::function<void(const Progress&)>& progress_;
   Lattice lattice_;
   std::optional<Region> region_;
+  Checkpoint* checkpoint_;
   std::vector<std::size_t> wanted_;
   WindowSchedule schedule_;
   WindowAverager averager_;
   Stopwatch clock_;
   Progress now_;
   RunReport report_;
+  std::size_t outputs_ = 0;  // output times that are finished
   BadFrames bad_;
   RunSize size_;
   std::size_t material_ = 0;  // particles that select kept, over frames and sweeps
@@ -111,21 +120,24 @@ class Stream {
 RunReport Stream::run() {
   const std::vector<Visit> visits = schedule_visits(schedule_, wanted_, plan_.sweeps.size());
   now_.frames_total = visits.size();
+  if (checkpoint_ != nullptr) resume();
+  const std::span<const Visit> left = std::span(visits).subspan(now_.frames_done);
 
   // What runs in parallel within a step is isolated: a thread that waits for the rest of it does not begin another
   // step.
-  const std::size_t in_flight = std::min(frames_in_flight(pipeline_.limits), visits.size());
+  const std::size_t in_flight = std::min(frames_in_flight(pipeline_.limits), left.size());
   ordered_pipeline(
-      visits.size(), in_flight,
-      [&](std::size_t i) { return tbb::this_task_arena::isolate([&] { return read(visits[i]); }); },
+      left.size(), in_flight,
+      [&](std::size_t i) { return tbb::this_task_arena::isolate([&] { return read(left[i]); }); },
       [&](std::size_t i, MaybeFrame frame) {
-        return tbb::this_task_arena::isolate([&] { return prepare(visits[i], std::move(frame)); });
+        return tbb::this_task_arena::isolate([&] { return prepare(left[i], std::move(frame)); });
       },
       [&](std::size_t i, MaybeReady frame) {
-        tbb::this_task_arena::isolate([&] { finish(visits[i], frame); });
+        tbb::this_task_arena::isolate([&] { finish(left[i], frame); });
         frame = {};
-        show_progress(visits[i]);
-        if (visits[i].ends_window) end_window(visits[i].window);
+        if (left[i].ends_window) end_window(left[i].window);
+        show_progress(left[i]);
+        if (checkpoint_ != nullptr && checkpoint_->is_due()) save_progress();
       });
 
   report_.frames = schedule_.frame_count() - bad_.count();
@@ -188,7 +200,13 @@ void Stream::show_progress(const Visit& visit) {
   now_.doing = "frames";
   if (const std::size_t sweeps = plan_.sweeps.size(); sweeps > 1)
     now_.doing = "sweep " + std::to_string(visit.sweep + 1) + " of " + std::to_string(sweeps);
-  if (progress_) progress_(now_);
+  if (!progress_) return;
+  try {
+    progress_(now_);
+  } catch (...) {
+    if (checkpoint_ != nullptr) save_progress();
+    throw;
+  }
 }
 
 OutputTime Stream::time_of_window(std::size_t window) const {
@@ -242,16 +260,67 @@ void Stream::end_window(std::size_t window) {
   report_.masked.clear();
   for (const ReasonInfo& r : reasons())
     if (const std::size_t n = derived.mask.count(r.reason); n > 0) report_.masked.emplace_back(r.name, n);
-  take_({time_of_window(window), std::move(derived.fields), std::move(derived.mask)});
+  OutputFields output{time_of_window(window), std::move(derived.fields), std::move(derived.mask)};
+  if (checkpoint_ != nullptr) clock_.time("checkpoint", [&] { checkpoint_->save_output(window, output); });
+  outputs_ = window + 1;
+  take_(std::move(output));
+}
+
+void Stream::resume() {
+  if (!checkpoint_->has_state()) return;
+  checkpoint_->load_state([&](ByteReader& from) { load(from); });
+  report_.resumed_at = now_.frames_done;
+  for (std::size_t k = 0; k < outputs_; ++k) take_(checkpoint_->load_output(k, lattice_));
+}
+
+void Stream::save_progress() {
+  clock_.time("checkpoint", [&] { checkpoint_->save_state([&](ByteWriter& to) { save(to); }); });
+}
+
+void Stream::save(ByteWriter& to) const {
+  to.number(std::uint64_t{now_.frames_done});
+  to.number(std::uint64_t{outputs_});
+  averager_.save(to);
+  bad_.save(to);
+  to.number(size_);
+  for (const std::size_t n : {material_, report_.active_voxels, report_.summed_leaves, report_.grids})
+    to.number(std::uint64_t{n});
+  to.number(std::uint64_t{report_.masked.size()});
+  for (const auto& [reason, voxels] : report_.masked) {
+    to.text(reason);
+    to.number(std::uint64_t{voxels});
+  }
+}
+
+void Stream::load(ByteReader& from) {
+  now_.frames_done = from.count();
+  outputs_ = from.count();
+  averager_.load(from);
+  bad_.load(from);
+  size_ = from.number<RunSize>();
+  for (std::size_t* n : {&material_, &report_.active_voxels, &report_.summed_leaves, &report_.grids}) *n = from.count();
+  for (std::size_t left = from.count(); left > 0; --left) {
+    std::string reason = from.text();
+    report_.masked.emplace_back(std::move(reason), from.count());
+  }
 }
 
 }  // namespace
 
+RunReport stream_fields(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
+                        const std::function<void(OutputFields)>& take,
+                        const std::function<void(const Progress&)>& progress, const std::optional<Region>& region,
+                        Checkpoint* checkpoint) {
+  const Lattice lattice = check_against_input(pipeline, plan, source);
+  return Stream(pipeline, plan, source, take, progress, lattice, region ? region : region_of(pipeline, lattice),
+                checkpoint)
+      .run();
+}
+
 RunReport compute_fields(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                          const std::function<void(OutputFields)>& take,
                          const std::function<void(const Progress&)>& progress, const std::optional<Region>& region) {
-  const Lattice lattice = check_against_input(pipeline, plan, source);
-  return Stream(pipeline, plan, source, take, progress, lattice, region ? region : region_of(pipeline, lattice)).run();
+  return stream_fields(pipeline, plan, source, take, progress, region, nullptr);
 }
 
 }  // namespace grainvdb

@@ -38,18 +38,24 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
   std::set<std::string> columns;
   for (const Sweep& sweep : plan.sweeps)
     for (const std::string& name : column_names(sweep.columns)) columns.insert(name);
+  Provenance all = key_of_run(pipeline, source);
+  all.insert(all.end(),
+             {{"units", source.units().name},
+              {"steps", lines(averaged, step)},
+              {"grain_volume_error", print_number(grain_volume_error(pipeline.cutoff / pipeline.voxel))},
+              {"skipped_frames", lines(skipped, step)},
+              {"bad_frames", lines(report.bad_frames, [](const BadFrame& frame) { return to_string(frame); })},
+              {"averaging", lines(report.averaging, plain)},
+              {"columns_read", lines(columns, plain)},
+              {"computed", lines(plan.stages, [](const Stage* s) { return s->name + ": " + s->equation; })},
+              {"not_needed", lines(plan.not_needed, plain)}});
+  return all;
+}
+
+std::vector<std::pair<std::string, std::string>> key_of_run(const Pipeline& pipeline, const FrameSource& source) {
   return {{"version", GRAINVDB_VERSION},
           {"pipeline", pipeline.resolved},
-          {"inputs", lines(source.files(), [](const auto& f) { return f.first + " " + std::to_string(f.second); })},
-          {"units", source.units().name},
-          {"steps", lines(averaged, step)},
-          {"grain_volume_error", print_number(grain_volume_error(pipeline.cutoff / pipeline.voxel))},
-          {"skipped_frames", lines(skipped, step)},
-          {"bad_frames", lines(report.bad_frames, [](const BadFrame& frame) { return to_string(frame); })},
-          {"averaging", lines(report.averaging, plain)},
-          {"columns_read", lines(columns, plain)},
-          {"computed", lines(plan.stages, [](const Stage* s) { return s->name + ": " + s->equation; })},
-          {"not_needed", lines(plan.not_needed, plain)}};
+          {"inputs", lines(source.files(), [](const auto& f) { return f.first + " " + std::to_string(f.second); })}};
 }
 
 }  // namespace grainvdb

@@ -14,4 +14,7 @@ namespace grainvdb {
 Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const FrameSource& source,
                          std::span<const std::size_t> frames, const RunReport& report);
 
+/// What two runs must have in common to give the same results: the beginning of the provenance.
+std::vector<std::pair<std::string, std::string>> key_of_run(const Pipeline& pipeline, const FrameSource& source);
+
 }  // namespace grainvdb

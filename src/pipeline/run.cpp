@@ -11,6 +11,7 @@
 #include "pipeline/provenance.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/stopwatch.hpp"
+#include "pipeline/stream.hpp"
 #include "pipeline/written_box.hpp"
 
 namespace grainvdb {
@@ -125,17 +126,22 @@ void Writer::commit(RunReport& report) {
 
 RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                        const std::vector<std::unique_ptr<FieldSink>>& sinks,
-                       const std::function<void(const Progress&)>& progress) {
+                       const std::function<void(const Progress&)>& progress,
+                       const std::optional<CheckpointOptions>& checkpoint) {
   Writer writer(pipeline, plan, source, sinks);
+  std::optional<Checkpoint> kept;
+  if (checkpoint) kept.emplace(*checkpoint, key_of_run(pipeline, source));
   RunReport report;
   try {
-    report = compute_fields(
-        pipeline, plan, source, [&](OutputFields output) { writer.take(std::move(output)); }, progress);
+    report = stream_fields(
+        pipeline, plan, source, [&](OutputFields output) { writer.take(std::move(output)); }, progress, {},
+        kept ? &*kept : nullptr);
   } catch (...) {
     writer.finish();  // what failed in writing is earlier
     throw;
   }
   writer.commit(report);
+  if (kept) kept->remove();
   return report;
 }
 

@@ -1,8 +1,11 @@
 #include "pipeline/window.hpp"
 
+#include <cstdint>
 #include <utility>
 
+#include "base/bytes.hpp"
 #include "pipeline/derive_errors.hpp"
+#include "pipeline/saved_fields.hpp"
 #include "pipeline/wanted_leaves.hpp"
 
 namespace grainvdb {
@@ -81,6 +84,23 @@ void WindowAverager::end_sweep(const Visit& visit) {
   if (schedule_.overlapping && visit.sweep == 0) join_parts(schedule_.windows[visit.window]);
   sums_->end_sweep();
   means_.emplace(sums_->means());
+}
+
+void WindowAverager::save(ByteWriter& to) const {
+  to.number(std::uint64_t{first_part_});
+  to.number(std::uint64_t{parts_.size()});
+  for (const WindowSums& part : parts_) part.save(to);
+  sums_->save(to);
+  to.number(means_.has_value());
+  // A further sweep may reach leaves that the means of the sweep before do not have.
+  if (means_) save_topology(to, *means_->topology());
+}
+
+void WindowAverager::load(ByteReader& from) {
+  first_part_ = from.count();
+  for (std::size_t left = from.count(); left > 0; --left) parts_.emplace_back(plan_.means, no_blocks).load(from);
+  sums_->load(from);
+  if (from.number<bool>()) means_.emplace(sums_->means(load_topology(from)));
 }
 
 }  // namespace grainvdb

@@ -46,6 +46,11 @@ class WindowAverager {
   const WindowSums& sums() const { return *sums_; }
   void begin_window();
 
+  /// Between two frames.
+  void save(ByteWriter& to) const;
+  /// Into an averager of the same pipeline, plan and schedule that nothing was added to.
+  void load(ByteReader& from);
+
  private:
   WindowSums& destination(const Visit& visit);
   void join_parts(const Window& window);

@@ -5,8 +5,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <regex>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -31,6 +33,12 @@ void sync_folder(const fs::path& folder) {
   if (descriptor < 0) return;
   ::fsync(descriptor);
   ::close(descriptor);
+}
+
+/// NAME.<process>-<number>.tmp
+bool is_temporary(const std::string& name) {
+  static const std::regex pattern(".+\\.[0-9]+-[0-9]+\\.tmp");
+  return std::regex_match(name, pattern);
 }
 
 }  // namespace
@@ -102,6 +110,15 @@ void AtomicFile::publish() {
   if (std::rename(temporary_path_.c_str(), path_.c_str()) != 0) fail("cannot rename the finished file", errno);
   published_ = true;
   sync_folder(folder_of(path_));
+}
+
+void remove_leftovers(const std::string& folder) {
+  std::error_code error;
+  std::vector<std::string> leftovers;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
+    if (is_temporary(entry.path().filename().string())) leftovers.push_back(entry.path().string());
+  if (error) throw IoError("cannot list the folder", folder, error.value());
+  for (const std::string& file : leftovers) remove_file(file);
 }
 
 void remove_file(const std::string& path) {

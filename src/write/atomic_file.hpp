@@ -43,6 +43,9 @@ class AtomicFile {
   bool published_ = false;
 };
 
+/// Removes temporary files that programs left in a folder that were killed. None may be at work there.
+void remove_leftovers(const std::string& folder);
+
 /// Removes a file if there is one.
 void remove_file(const std::string& path);
 

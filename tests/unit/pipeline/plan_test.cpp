@@ -1,10 +1,10 @@
-#include "grainvdb/memory_model.hpp"
 #include "grainvdb/plan.hpp"
 
 #include <numbers>
 
 #include <gmock/gmock.h>
 
+#include "grainvdb/memory_model.hpp"
 #include "unit/pipeline/support.hpp"
 
 namespace grainvdb {
@@ -271,13 +271,13 @@ TEST(Describe, SaysHowFramesAreAveraged) {
   const auto text = [&] { return describe(make_plan(p, registry), p); };
   EXPECT_THAT(text(), HasSubstr("frames: all; averaged over all of them\n"));
   // A sum and a number of samples in double, a field in float.
-  EXPECT_THAT(text(), HasSubstr(" + 20 V bytes\n"));
+  EXPECT_THAT(text(), HasSubstr(" + 23 V bytes\n"));
   p.window = 1;
   EXPECT_THAT(text(), HasSubstr("frames: all; each by itself\n"));
   p.window = 100;
   p.window_step = 4;
   EXPECT_THAT(text(), HasSubstr("averaged over windows of 100 frames, one every 4 frames\n"));
-  EXPECT_THAT(text(), HasSubstr(" + 440 V bytes\n"));  // 26 sums
+  EXPECT_THAT(text(), HasSubstr(" + 484 V bytes\n"));  // 26 sums
 }
 
 TEST(Describe, DrawsTheGraph) {

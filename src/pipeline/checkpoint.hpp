@@ -1,0 +1,56 @@
+#pragma once
+/// Where a run stands, kept in a folder so that another run can go on from there.
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/bytes.hpp"
+#include "grainvdb/run.hpp"
+
+namespace grainvdb {
+
+/// What a run must have in common with the one that it continues: name → text.
+using RunKey = std::vector<std::pair<std::string, std::string>>;
+
+/// The folder holds the output times that are finished, a file each, and the state of the run, which says how many of
+/// them count. Files appear under their names when they are complete and on the disk, so that whatever ends the run
+/// leaves a state that can be continued.
+class Checkpoint {
+ public:
+  /// Makes the folder, and keeps other runs out of it. Throws ConfigError where it is that of a run with another key,
+  /// InputError where a file in it is damaged, IoError.
+  Checkpoint(const CheckpointOptions& options, RunKey key);
+  ~Checkpoint();
+  Checkpoint(const Checkpoint&) = delete;
+  Checkpoint& operator=(const Checkpoint&) = delete;
+
+  /// Whether a run left its state here.
+  bool has_state() const { return has_state_; }
+  void load_state(const std::function<void(ByteReader&)>& load) const;
+  /// Whether it is time to save it again.
+  bool is_due() const;
+  void save_state(const std::function<void(ByteWriter&)>& save);
+
+  void save_output(std::size_t k, const OutputFields& output) const;
+  OutputFields load_output(std::size_t k, const Lattice& lattice) const;
+
+  /// Once the results are complete.
+  void remove();
+
+ private:
+  std::string path(const std::string& name) const;
+  void lock();
+  void check_key() const;
+
+  double interval_;
+  std::string folder_;
+  RunKey key_;
+  int lock_ = -1;
+  bool has_state_ = false;
+  std::chrono::steady_clock::time_point saved_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace grainvdb
