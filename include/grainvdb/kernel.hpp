@@ -46,6 +46,9 @@ class LucyKernel {
   double marginal(double z) const;
   double marginal_integral(double z) const;
 
+  /// ∫ W dV over the ball of radius r ≥ 0 about the centre [1].
+  double radial_integral(double r) const;
+
   /// Fourier transform Ŵ(k), k = |wave vector| [1/length]; Ŵ(0) = 1.
   double fourier(double k) const;
 

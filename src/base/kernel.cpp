@@ -138,6 +138,13 @@ double LucyKernel::marginal_integral(double z) const {
   return std::copysign(std::min(half, 0.5), z);
 }
 
+double LucyKernel::radial_integral(double r) const {
+  const double q = r * inverse_cutoff_;
+  if (!(q < 1)) return 1;
+  // 105/4 ∫ q² (1-q)³ (1+3q) dq
+  return std::min(1.0, q * q * q * (35.0 / 4 + q * q * (-63.0 / 2 + q * (35 - 45.0 / 4 * q))));
+}
+
 double LucyKernel::fourier(double k) const {
   const double x = std::abs(k) * cutoff_;
   const double x2 = x * x;

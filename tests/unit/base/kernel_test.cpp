@@ -78,6 +78,20 @@ TEST_P(Kernel, GradientIsTheDerivativeOfTheValue) {
   }
 }
 
+TEST_P(Kernel, RadialIntegralIsTheIntegralOverBalls) {
+  for (double q : {0.0, 1e-5, 0.2, 0.5, 0.9, 1.0}) {
+    const double r = q * c;
+    const auto ball = quadrature::integrate(
+        [&](long double x) {
+          return 4 * std::numbers::pi_v<long double> * x * x * kernel.value(static_cast<double>(x * x));
+        },
+        0, static_cast<long double>(r), 1);
+    EXPECT_NEAR(kernel.radial_integral(r), static_cast<double>(ball), 8 * epsilon) << q;
+  }
+  EXPECT_EQ(kernel.radial_integral(c), 1);
+  EXPECT_EQ(kernel.radial_integral(3 * c), 1);
+}
+
 TEST_P(Kernel, MarginalIsTheIntegralOverPlanes) {
   for (double zeta : {0.0, 0.1, 0.35, 0.7, 0.95, 0.999}) {
     const double z = zeta * c;
