@@ -28,6 +28,8 @@ enum class Reason : std::uint32_t {
   negative_temperature = 1u << 11,  ///< the gradient part exceeds the one-pass variance: no T, no δω²
   lone_particles = 1u << 12,        ///< particles are their own mean: T, δω² without self-weight undefined
   few_blocks = 1u << 13,            ///< undefined without one of the blocks of frames: its standard error undefined
+  behind_wall = 1u << 14,           ///< the centre of the voxel lies behind a wall: every field undefined
+  near_wall = 1u << 15,             ///< the kernel comes nearer to a wall than walls.clearance: every field undefined
 };
 
 struct ReasonInfo {

@@ -33,6 +33,14 @@ struct LineIntegral {
   bool operator==(const LineIntegral&) const = default;
 };
 
+/// Which of a frame's half branches a moment of contacts sums over.
+enum class BranchKind {
+  all,            ///< both of every contact
+  outside_walls,  ///< those that do not lie in a wall grain
+  at_walls        ///< one for each contact of material with a wall grain: at the contact point, with the force on the
+                  ///< material and an arm of length zero
+};
+
 /// The channels of Moment::Kind::second_moments at a voxel x, with r = x_α - x the place of a particle (or of the image
 /// of it that the kernel reaches) about the voxel. From them Σ w (v - a - L r)(v - a - L r) W follows for any a and L.
 /// Sums are exact to 1e-5 (about 1e-6 in practice) of the sums of the terms' magnitudes with v measured from the mean
@@ -74,7 +82,8 @@ struct Moment {
   std::vector<MomentPtr>
       mean_needs{};                  ///< moments whose time mean must be known before: one more sweep over the frames
   std::array<bool, 3> whole_axes{};  ///< along these the frame_needs are needed everywhere, not near the particles only
-  LineIntegral line_integral{};      ///< for contacts
+  BranchKind branch_kind = BranchKind::all;  ///< for contacts
+  LineIntegral line_integral{};              ///< for contacts
 
   /// For sums Σ w q W whose mean is taken off later: the moment Σ w W. The splat then sums w (q - r) with a local
   /// reference r of q, in which single precision loses nothing.
@@ -105,15 +114,15 @@ struct HalfBranches {
   std::size_t size() const { return start[0].size(); }
 };
 
-/// A frame as the moments see it: the material particles, the half branches, and fields of this frame or of the time
-/// mean sampled at the particles.
+/// A frame as the moments see it: the material particles, the half branches that moments sum over, and fields of this
+/// frame or of the time mean sampled at the particles.
 class FrameView {
  public:
   virtual ~FrameView() = default;
 
   /// The particles that count as material, in ascending order of id.
   virtual const Particles& particles() const = 0;
-  virtual const HalfBranches& branches() const = 0;
+  virtual const HalfBranches& branches(BranchKind set) const = 0;
 
   /// numerator/denominator formed at the voxels, then interpolated trilinearly to every particle: the three channels of
   /// `numerator` over the single channel of `denominator`, both among the moment's frame_needs (`interpolate_frame`)

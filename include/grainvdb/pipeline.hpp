@@ -12,6 +12,7 @@
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/options.hpp"
 #include "grainvdb/stage.hpp"
+#include "grainvdb/walls.hpp"
 
 namespace grainvdb {
 
@@ -45,6 +46,7 @@ struct Pipeline {
   std::string file;  ///< where it was read from
   InputSpec input;
   Selection select;
+  WallSpec walls;
   FrameRange frames;
   std::optional<std::pair<Vec3, Vec3>> region;  ///< where fields are wanted: voxel centres in lo ≤ x < hi [length]
   double voxel = 0;                             ///< h [length]

@@ -2,6 +2,7 @@
 /// What a pipeline's wanted outputs need, resolved backwards, so that nothing else is read, splatted or written.
 #include <array>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace grainvdb {
 /// One sweep over the frames of a window.
 struct Sweep {
   ColumnSet columns;                           ///< what is read
+  std::set<BranchKind> branch_kinds;           ///< that moments sum over
   std::vector<std::vector<MomentPtr>> passes;  ///< the moments of each pass over a frame, in order
 };
 
@@ -39,10 +41,15 @@ struct Plan {
 
 /// What is read of a frame in any of the sweeps.
 ColumnSet all_columns(const Plan& plan);
+/// The half branches that moments sum over in any of the sweeps.
+std::set<BranchKind> all_branch_kinds(const Plan& plan);
+/// Whether one of these tells wall grains from others.
+bool tells_walls(const std::set<BranchKind>& kinds);
 
 /// Throws ConfigError for an unknown field (with "did you mean"), for a cycle among stages (naming it), and for a
 /// kernel that could miss every voxel centre (c < √3/2 h) or is too narrow for a moment that interpolates to particles
-/// (c < √3 h). Throws LimitError for voxels so coarse that the volume of a grain errs by more than limits.volume_error.
+/// (c < √3 h). Throws LimitError for
+/// voxels so coarse that the volume of a grain errs by more than limits.volume_error.
 Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry = StageRegistry::standard());
 
 /// The plan in words, as `grainvdb graph` prints it.

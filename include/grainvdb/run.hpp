@@ -38,6 +38,7 @@ struct RunReport {
   std::vector<std::pair<std::string, std::size_t>> masked;  ///< reason → voxels, of the last output time
   std::vector<BadFrame> bad_frames;                         ///< that were left out
   std::vector<std::string> averaging;                       ///< what there is to say of the averages, in words
+  std::vector<std::string> walls;                           ///< where they are and what is done about them, in words
   std::vector<std::string> files;                           ///< written
   ReadCounters read;
 };

@@ -31,6 +31,9 @@ struct BoxFace {
   bool high = false;
 };
 
+/// The unit vector into the box.
+Vec3 inward_normal(const BoxFace& face);
+
 /// What the pipeline file says of walls.
 struct WallSpec {
   /// What is done about the part of the kernel that a wall cuts off.

@@ -35,6 +35,10 @@ class MomentMeans {
   }
   const double* frame_count(std::size_t leaf) const { return frame_counts_[leaf]; }
 
+  bool holds(const Moment& moment) const { return first_channel_.contains(moment.name); }
+  /// Puts other values, laid out alike, in the place of a leaf's. They must outlive the means.
+  void replace(std::size_t leaf, const double* values) { values_.leaves[leaf] = values; }
+
  private:
   LeafBlocks values_;
   std::vector<const double*> frame_counts_;

@@ -21,6 +21,8 @@ const std::vector<ReasonInfo>& reasons() {
        "gradient part exceeds the one-pass variance: no T, no dw^2"},
       {Reason::lone_particles, "lone_particles", "particles are their own mean: no fluctuation without self-weight"},
       {Reason::few_blocks, "few_blocks", "no value without one of the blocks of frames: standard error undefined"},
+      {Reason::behind_wall, "behind_wall", "the centre of the voxel lies behind a wall"},
+      {Reason::near_wall, "near_wall", "the kernel comes nearer to a wall than the clearance"},
   };
   return all;
 }

@@ -167,6 +167,12 @@ bool cut_apart(const std::vector<const Wall*>& walls) {
 
 }  // namespace
 
+Vec3 inward_normal(const BoxFace& face) {
+  Vec3 normal{};
+  normal[static_cast<std::size_t>(face.axis)] = face.high ? -1 : 1;
+  return normal;
+}
+
 WallDomain::WallDomain(std::vector<Wall> walls) : walls_(std::move(walls)) {
   for (Wall& w : walls_) {
     const double length = std::sqrt(dot(w.direction, w.direction));

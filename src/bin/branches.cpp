@@ -149,4 +149,15 @@ HalfBranches half_branches(const Frame& frame) {
   return branches;
 }
 
+std::vector<std::size_t> branch_particles(const Frame& frame) {
+  const Contacts& contacts = frame.contacts;
+  const ParticleRows rows(frame.particles.id);
+  std::vector<std::size_t> particle(2 * contacts.size());
+  parallel_for(contacts.size(), [&](std::size_t k) {
+    particle[2 * k] = rows.find(contacts.id1[k]);
+    particle[2 * k + 1] = rows.find(contacts.id2[k]);
+  });
+  return particle;
+}
+
 }  // namespace grainvdb

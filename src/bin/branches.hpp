@@ -1,5 +1,8 @@
 #pragma once
 /// The contacts of a frame as half branches, from each particle's centre to the contact point.
+#include <cstddef>
+#include <vector>
+
 #include "grainvdb/frame.hpp"
 #include "grainvdb/moment.hpp"
 
@@ -12,5 +15,8 @@ namespace grainvdb {
 /// than two radii of its particle. Throws InputError when a contact names a particle that the frame lacks, joins a
 /// particle with itself, has an arm that is too long, or has neither a point nor radii.
 HalfBranches half_branches(const Frame& frame);
+
+/// The row of the particle in which each half branch lies, of a frame that half_branches accepts.
+std::vector<std::size_t> branch_particles(const Frame& frame);
 
 }  // namespace grainvdb

@@ -37,6 +37,12 @@ std::string type_text(const Json& value) {
     if (first.contains("items") && first["items"] == value["anyOf"][1]) return type_text(first);
     return joined(value["anyOf"], " or ", &type_text);
   }
+  if (value.contains("properties")) {
+    std::string keys;
+    for (const auto& [name, inside] : value["properties"].items())
+      keys += (keys.empty() ? "" : ", ") + name + ": " + type_text(inside);
+    return '{' + keys + '}';
+  }
   const auto type = value.value("type", std::string());
   return type == "array" ? "list of " + type_text(value["items"]) : type;
 }

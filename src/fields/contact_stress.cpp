@@ -14,15 +14,22 @@ LineIntegral line_integral_of(const StageSettings& settings) {
   return LineIntegral::gauss(text.back() - '0');
 }
 
+BranchKind branch_kind_of(const StageSettings& settings) {
+  const bool all = option<std::string>(settings, "contact_stress", "wall_contacts") == "include";
+  return all ? BranchKind::all : BranchKind::outside_walls;
+}
+
 MomentPtr contact_stress_moment(const StageSettings& settings) {
   Moment m;
   m.name = "contact stress " + option<std::string>(settings, "contact_stress", "line_integral");
+  m.branch_kind = branch_kind_of(settings);
+  if (m.branch_kind == BranchKind::outside_walls) m.name += " outside walls";
   m.kind = Moment::Kind::contacts;
   m.channels = 9;
   m.columns = Column::contacts | Column::radius;
   m.line_integral = line_integral_of(settings);
-  m.values = [](const FrameView& view, std::span<double> q) {
-    const HalfBranches& b = view.branches();
+  m.values = [set = m.branch_kind](const FrameView& view, std::span<double> q) {
+    const HalfBranches& b = view.branches(set);
     for (std::size_t n = 0; n < b.size(); ++n)
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = 0; j < 3; ++j) q[9 * n + 3 * i + j] = -b.force[i][n] * b.arm[j][n];
@@ -47,7 +54,12 @@ void register_contact_stress(StageRegistry& registry) {
        .default_value = std::string("adaptive"),
        .help = "mean of W along a half branch: as few points as keep its error below 3e-5 W(0), closed form in double, "
                "or n-point Gauss-Legendre (gauss1 ... gauss8)",
-       .choices = methods}};
+       .choices = methods},
+      {.name = "wall_contacts",
+       .default_value = std::string("include"),
+       .help = "include: forces on wall grains are spread to their centres too; exclude: without the half branches in "
+               "wall grains, so that wall_force closes the balance of momentum",
+       .choices = {"include", "exclude"}}};
   s.needs = [](const StageSettings& settings) { return StageNeeds{{}, {contact_stress_moment(settings)}}; };
   s.compute = [](const StageInput& in, SparseField& out) {
     write_moment(in, *contact_stress_moment(in.settings()), out);

@@ -13,6 +13,7 @@ void register_rotational_fluctuation(StageRegistry& registry);
 void register_contact_stress(StageRegistry& registry);
 void register_kinetic_stress(StageRegistry& registry);
 void register_stress(StageRegistry& registry);
+void register_wall_force(StageRegistry& registry);
 void register_bookkeeping(StageRegistry& registry);
 
 }  // namespace grainvdb

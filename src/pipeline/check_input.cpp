@@ -8,6 +8,7 @@
 #include "pipeline/frame_checks.hpp"
 #include "pipeline/material.hpp"
 #include "pipeline/schedule.hpp"
+#include "pipeline/wall_domain.hpp"
 
 namespace grainvdb {
 namespace {
@@ -32,6 +33,15 @@ void check_plan(const Pipeline& pipeline, const Plan& plan) {
     throw ConfigError({pipeline.location("output.fields"), "the wanted fields need contacts, and the input has none",
                        "no input.contacts", "input.contacts.files",
                        "Name the contact dumps, or ask for kinetic_stress instead of stress"});
+}
+
+void check_wall_grains(const Pipeline& pipeline, const Plan& plan) {
+  if (!tells_walls(all_branch_kinds(plan)) || !pipeline.walls.types.empty() || !pipeline.select.empty()) return;
+  throw ConfigError({pipeline.location("output.fields"),
+                     "the wanted fields tell wall grains from material, and nothing says which are which",
+                     "neither walls.types nor select",
+                     "walls.types: the types of the wall grains; or select, which leaves them out",
+                     {}});
 }
 
 void check_periodic_box(const Pipeline& pipeline, const FrameInfo& first, const FrameInfo& frame) {
@@ -95,13 +105,14 @@ void require_blocks(const Pipeline& pipeline, const Plan& plan, std::size_t fram
 
 void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
                  std::size_t k) {
-  const Material material = make_material(source.read(k, all_columns(plan)), pipeline.select);
+  const Material material = make_material(source.read(k, all_columns(plan)), pipeline, all_branch_kinds(plan));
   check_extents(material, lattice, pipeline);
   if (!pipeline.region) check_spread(material, lattice, pipeline);
 }
 
 Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source) {
   check_plan(pipeline, plan);
+  check_wall_grains(pipeline, plan);
   const auto& frames = source.frames();
   const std::vector<std::size_t> wanted = select_frames(pipeline.frames, frames.size());
   if (wanted.empty())
@@ -121,6 +132,7 @@ Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSou
   }
 
   require_blocks(pipeline, plan, wanted.size());
+  wall_domain(pipeline, source, wanted);
   require_columns(pipeline, plan, source, wanted);
   return lattice;
 }

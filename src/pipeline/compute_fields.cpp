@@ -20,6 +20,7 @@
 #include "pipeline/schedule.hpp"
 #include "pipeline/stopwatch.hpp"
 #include "pipeline/stream.hpp"
+#include "pipeline/wall_treatment.hpp"
 #include "pipeline/window.hpp"
 #include "pipeline/written_box.hpp"
 
@@ -74,7 +75,8 @@ class Stream {
         checkpoint_(checkpoint),
         wanted_(select_frames(pipeline.frames, source.frames().size())),
         schedule_(schedule_windows(time_windows(pipeline, plan), wanted_.size())),
-        averager_(pipeline, plan, schedule_, lattice, region) {
+        averager_(pipeline, plan, schedule_, lattice, region),
+        walls_(WallTreatment::make(pipeline, plan, lattice, source, wanted_)) {
     size_.images = images_per_particle(lattice, pipeline.cutoff);
   }
 
@@ -89,7 +91,7 @@ class Stream {
   void show_progress(const Visit& visit);
   OutputTime time_of_window(std::size_t window) const;
   void require_material() const;
-  DerivedFields derive() const;
+  DerivedFields derive();
   void end_window(std::size_t window);
 
   void resume();
@@ -108,6 +110,7 @@ class Stream {
   std::vector<std::size_t> wanted_;
   WindowSchedule schedule_;
   WindowAverager averager_;
+  std::optional<WallTreatment> walls_;
   Stopwatch clock_;
   Progress now_;
   RunReport report_;
@@ -146,6 +149,7 @@ RunReport Stream::run() {
   report_.memory = memory_model(plan_, pipeline_).peak(size_);
   report_.averaging.push_back(describe(schedule_, pipeline_));
   if (!plan_.by_block.empty()) report_.averaging.push_back(describe_blocks(schedule_));
+  if (walls_) report_.walls = walls_->describe();
   report_.seconds = clock_.seconds();
   report_.wall_seconds = clock_.passed();
   report_.read = source_.counters();
@@ -164,8 +168,10 @@ MaybeReady Stream::prepare(const Visit& visit, MaybeFrame frame) {
   if (frame.fault) return {{}, frame.fault};
   return clock_.time("prepare", [&] {
     return attempt(pipeline_.input.on_error, [&] {
-      return averager_.prepare(
-          std::make_shared<const Material>(make_material(std::move(*frame.value), pipeline_.select)), visit.sweep);
+      const std::set<BranchKind>& branches = plan_.sweeps[visit.sweep].branch_kinds;
+      Material material = make_material(std::move(*frame.value), pipeline_, branches);
+      if (walls_) walls_->apply(material);
+      return averager_.prepare(std::make_shared<const Material>(std::move(material)), visit.sweep);
     });
   });
 }
@@ -236,14 +242,19 @@ void Stream::require_material() const {
                       "Check select and frames"});
 }
 
-DerivedFields Stream::derive() const {
+DerivedFields Stream::derive() {
   const std::set<std::string> wanted(pipeline_.fields.begin(), pipeline_.fields.end());
   std::set<std::string> kept = wanted;
   for (const Stage* stage : plan_.stages)
     if (!stage->error_of.empty()) kept.insert(stage->error_of);
-  DerivedFields all = derive_fields(pipeline_, plan_.stages, kept, lattice_, source_.units(), averager_.means());
-  derive_errors({pipeline_, plan_, lattice_, source_.units()}, averager_.sums(), averager_.means(), all);
+  std::optional<WallTreatment::Renormalised> inside;
+  if (walls_) inside.emplace(walls_->renormalise(averager_.means(), plan_.means));
+  DerivedFields all = derive_fields(pipeline_, plan_.stages, kept, lattice_, source_.units(),
+                                    inside ? inside->means : averager_.means());
+  derive_errors({pipeline_, plan_, lattice_, source_.units(), walls_ ? &*walls_ : nullptr}, averager_.sums(),
+                averager_.means(), all);
   std::erase_if(all.fields, [&](const auto& entry) { return !wanted.contains(entry.first); });
+  if (walls_) walls_->mask(all);
   if (region_) return clip_fields(all, *region_, lattice_);
   return all;
 }

@@ -95,6 +95,46 @@ std::vector<std::string> texts(const KeyInfo& key, const ConfigNode& node) {
   return result;
 }
 
+[[noreturn]] void refuse_name(const std::string& what, const ConfigEntry& entry,
+                              const std::vector<std::string>& names) {
+  throw ConfigError(
+      {entry.where, what + ' ' + quote_text(entry.key), {}, join_choices(names), did_you_mean(entry.key, names)});
+}
+
+ConfigItem item(const KeyInfo& key, const ConfigNode& node) {
+  if (node.kind != ConfigNode::Kind::mapping || node.entries.size() != 1)
+    refuse(key, node, "has an item that is not one section");
+  const ConfigEntry& entry = node.entries.front();
+  const auto kind =
+      std::find_if(key.kinds.begin(), key.kinds.end(), [&](const ItemKind& k) { return k.name == entry.key; });
+  if (kind == key.kinds.end()) {
+    std::vector<std::string> names;
+    for (const ItemKind& k : key.kinds) names.push_back(k.name);
+    refuse_name("unknown kind of item in " + key.path() + ':', entry, names);
+  }
+  if (entry.value.kind != ConfigNode::Kind::mapping) refuse(key, node, "has an item without keys");
+  ConfigItem result{kind->name, {}};
+  const auto find = [&](const std::string& name) {
+    return std::find_if(kind->keys.begin(), kind->keys.end(), [&](const KeyInfo& k) { return k.name == name; });
+  };
+  for (const ConfigEntry& value : entry.value.entries) {
+    const auto own = find(value.key);
+    if (own == kind->keys.end()) {
+      std::vector<std::string> names;
+      for (const KeyInfo& k : kind->keys) names.push_back(k.name);
+      refuse_name("unknown key of a " + kind->name + " in " + key.path() + ':', value, names);
+    }
+    result.values.emplace_back(value.key, convert(*own, value.value));
+  }
+  for (const KeyInfo& own : kind->keys) {
+    if (result.find(own.name) != nullptr) continue;
+    if (own.required)
+      throw ConfigError({entry.where, "the key '" + own.path() + "' is missing", {}, accepted(own), {}});
+    if (own.default_value) result.values.emplace_back(own.name, *own.default_value);
+  }
+  return result;
+}
+
 std::string frame_range(const KeyInfo& key, const ConfigNode& node) {
   const std::string& text = scalar(key, node);
   const auto range = parse_frame_range(text);
@@ -129,6 +169,8 @@ ConfigValue convert(const KeyInfo& key, const ConfigNode& node) {
       return list<std::int64_t>(key, node, &integer);
     case ValueType::numbers:
       return list<double>(key, node, &number);
+    case ValueType::items:
+      return list<ConfigItem>(key, node, &item);
     case ValueType::frame_range:
       return frame_range(key, node);
     case ValueType::window:

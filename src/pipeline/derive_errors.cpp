@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -86,8 +87,10 @@ void derive_errors(const DeriveSetting& setting, const WindowSums& sums, const M
   }
   for (std::size_t j = 0; enough_blocks && j < blocks.size(); ++j) {
     const MomentMeans rest = others.without(blocks[j]);
-    const DerivedFields without =
-        derive_fields(setting.pipeline, setting.plan.by_block, fields, setting.lattice, setting.units, rest);
+    std::optional<WallTreatment::Renormalised> inside;
+    if (setting.walls != nullptr) inside.emplace(setting.walls->renormalise(rest, setting.plan.block_sums));
+    const DerivedFields without = derive_fields(setting.pipeline, setting.plan.by_block, fields, setting.lattice,
+                                                setting.units, inside ? inside->means : rest);
     all.grids += without.grids;
     for (Estimate& e : estimates) e.jackknife.leave_out(j, without.fields.at(e.stage->error_of));
   }

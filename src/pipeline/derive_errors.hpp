@@ -9,6 +9,7 @@
 #include "grainvdb/plan.hpp"
 #include "grainvdb/units.hpp"
 #include "pipeline/derive_fields.hpp"
+#include "pipeline/wall_treatment.hpp"
 
 namespace grainvdb {
 
@@ -18,10 +19,11 @@ struct DeriveSetting {
   const Plan& plan;
   const Lattice& lattice;
   const UnitSystem& units;
+  WallTreatment* walls;  ///< nullptr: none
 };
 
 /// Adds the standard errors that the plan asks for to `all`, which holds the fields that they are of, derived from
-/// `means`. An error is undefined where its field is and, with Reason::few_blocks, where the field is without one of
+/// `means` as the walls leave them. An error is undefined where its field is and, with Reason::few_blocks, where the field is without one of
 /// the blocks or only one of them reaches the voxel. Blocks without a frame do not count.
 void derive_errors(const DeriveSetting& setting, const WindowSums& sums, const MomentMeans& means, DerivedFields& all);
 

@@ -7,6 +7,8 @@
 #include "grainvdb/plan.hpp"
 #include "grainvdb/units.hpp"
 #include "pipeline/number.hpp"
+#include "pipeline/wall_domain.hpp"
+#include "pipeline/wall_schema.hpp"
 
 namespace grainvdb {
 namespace {
@@ -103,6 +105,21 @@ std::string frame_text(const Pipeline& pipeline) {
          std::to_string(r.step);
 }
 
+std::string wall_text(const WallSpec& walls) {
+  if (walls.kernel == WallSpec::Kernel::cut) return {};
+  std::string text = "walls: ";
+  if (walls.kernel == WallSpec::Kernel::renormalise) text += "sums divided by the part of the kernel inside of\n";
+  if (walls.kernel == WallSpec::Kernel::mirror) text += "mirror images of grains and contacts behind\n";
+  if (walls.kernel == WallSpec::Kernel::mask)
+    text += "voxels masked whose kernel comes nearer than " +
+            (walls.clearance ? print_number(*walls.clearance) : std::string("1.5 radii of the largest grain")) +
+            " to\n";
+  const WallDomain domain(walls.surfaces);
+  for (const Wall& wall : domain.walls()) text += "  " + to_string(wall) + '\n';
+  for (const BoxFace& face : walls.faces) text += "  face " + face_name(face) + " of the box\n";
+  return text;
+}
+
 std::string window_text(const Pipeline& pipeline) {
   if (pipeline.window == 0) return "averaged over all of them";
   std::string text =
@@ -117,6 +134,7 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
   std::string text = "pipeline " + pipeline.file + '\n';
   if (pipeline.region)
     text += "region: " + corner_text(pipeline.region->first) + " to " + corner_text(pipeline.region->second) + '\n';
+  text += wall_text(pipeline.walls);
   text += "frames: " + frame_text(pipeline) + "; " + window_text(pipeline) + "\n\n";
   for (std::size_t s = 0; s < plan.sweeps.size(); ++s) {
     text += "sweep " + std::to_string(s + 1) + " of " + std::to_string(plan.sweeps.size()) + '\n';

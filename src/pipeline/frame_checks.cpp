@@ -55,8 +55,9 @@ double memory_needed(double leaves, const SplatMemory& memory) {
 }  // namespace
 
 void check_extents(const Material& material, const Lattice& lattice, const Pipeline& pipeline) {
-  check_extent(material, material.branches.start, lattice, pipeline,
-               [](std::size_t) { return std::string("a particle with contacts"); });
+  for (const auto& [set, branches] : material.branches)
+    check_extent(material, branches.start, lattice, pipeline,
+                 [](std::size_t) { return std::string("a particle with contacts"); });
   check_extent(material, material.particles.position, lattice, pipeline,
                [&](std::size_t i) { return "particle " + std::to_string(material.particles.id[i]); });
 }

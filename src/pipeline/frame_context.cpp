@@ -68,7 +68,7 @@ const std::shared_ptr<const Topology>& FrameContext::particle_leaves(const Halo&
 
 FrameContext::Started FrameContext::start(const SplatGroup& group, std::size_t bytes_per_leaf) {
   const bool contacts = group.kind() == Moment::Kind::contacts;
-  const Columns3& nodes = contacts ? branches().start : particles().position;
+  const Columns3& nodes = contacts ? branches(group.branch_kind()).start : particles().position;
   const double cutoff = setting_.kernel.cutoff();
   const Region* const wanted = setting_.wanted_leaves(group.halo);
   // Only where the most that it can be is too much is it worth looking closer.
@@ -77,8 +77,9 @@ FrameContext::Started FrameContext::start(const SplatGroup& group, std::size_t b
     check(static_cast<std::size_t>(least_leaves(setting_.lattice, nodes, cutoff)), group, bytes_per_leaf, 0);
   Started started{values_of(group), nullptr, nullptr};
   if (contacts) {
-    started.contacts = std::make_unique<ContactSplat>(setting_.lattice, setting_.kernel, branches(), started.values,
-                                                      group.value_count(), group.moments[0]->line_integral, wanted);
+    started.contacts =
+        std::make_unique<ContactSplat>(setting_.lattice, setting_.kernel, branches(group.branch_kind()), started.values,
+                                       group.value_count(), group.moments[0]->line_integral, wanted);
     started.topology = started.contacts->topology();
   } else {
     started.topology = particle_leaves(group.halo);
@@ -88,7 +89,7 @@ FrameContext::Started FrameContext::start(const SplatGroup& group, std::size_t b
 
 std::vector<double> FrameContext::values_of(const SplatGroup& group) const {
   const std::vector<MomentPtr>& moments = group.moments;
-  const std::size_t n = group.kind() == Moment::Kind::contacts ? branches().size() : particles().size();
+  const std::size_t n = group.entries(*this);
   const std::size_t stride = group.weight_of.size();
   std::vector<double> all(n * stride);
   if (moments.size() == 1) {

@@ -51,7 +51,7 @@ class FrameContext : public FrameView {
   void run(WindowSums& sums, std::size_t bytes_per_leaf, const MomentMeans* means);
 
   const Particles& particles() const override { return material_->particles; }
-  const HalfBranches& branches() const override { return material_->branches; }
+  const HalfBranches& branches(BranchKind set) const override { return material_->branches.at(set); }
   std::vector<Vec3> interpolate_frame(const Moment& numerator, const Moment& denominator) const override;
   std::vector<Vec3> interpolate_mean(const Moment& numerator, const Moment& denominator) const override;
   std::vector<double> deviation_factors(const Moment& denominator) const override;

@@ -27,6 +27,34 @@ Json list_schema(const KeyInfo& key, const Json& items) {
   return json;
 }
 
+Json key_schema(const KeyInfo& key);
+
+/// A section that holds the one kind of item.
+Json kind_schema(const ItemKind& kind) {
+  Json properties = Json::object(), required = Json::array();
+  for (const KeyInfo& key : kind.keys) {
+    properties[key.name] = key_schema(key);
+    if (key.required) required.push_back(key.name);
+  }
+  const Json inside{{"type", "object"},
+                    {"description", kind.help},
+                    {"properties", properties},
+                    {"required", required},
+                    {"additionalProperties", false}};
+  return {{"type", "object"},
+          {"properties", {{kind.name, inside}}},
+          {"required", Json::array({kind.name})},
+          {"additionalProperties", false}};
+}
+
+Json default_of(const std::vector<ConfigItem>&) {
+  return Json::array();
+}
+template <class T>
+Json default_of(const T& value) {
+  return value;
+}
+
 Json value_schema(const KeyInfo& key) {
   switch (key.type) {
     case ValueType::boolean:
@@ -46,6 +74,11 @@ Json value_schema(const KeyInfo& key) {
       list["uniqueItems"] = true;
       return key.fewest > 1 ? list : Json{{"anyOf", {list, text_schema(key)}}};
     }
+    case ValueType::items: {
+      Json kinds = Json::array();
+      for (const ItemKind& kind : key.kinds) kinds.push_back(kind_schema(kind));
+      return list_schema(key, {{"anyOf", kinds}});
+    }
     case ValueType::frame_range:
       return {{"anyOf",
                {{{"type", "string"}, {"pattern", "^([-+]?[0-9]+|[-+]?[0-9]*:[-+]?[0-9]*(:[0-9]*)?)$"}},
@@ -56,14 +89,18 @@ Json value_schema(const KeyInfo& key) {
   return {{"anyOf", {{{"enum", {"all", "none"}}}, number_schema(key, "integer")}}};
 }
 
+Json key_schema(const KeyInfo& key) {
+  Json json = value_schema(key);
+  json["description"] = key.help + (key.unit.empty() ? "" : " [" + key.unit + ']');
+  if (key.default_value) json["default"] = std::visit([](const auto& v) { return default_of(v); }, *key.default_value);
+  return json;
+}
+
 Json section_schema(const Schema& schema, const std::string& path, const std::string& help) {
   Json properties = Json::object(), required = Json::array();
   for (const KeyInfo& key : schema.keys) {
     if (key.section != path) continue;
-    Json json = value_schema(key);
-    json["description"] = key.help + (key.unit.empty() ? "" : " [" + key.unit + ']');
-    if (key.default_value) json["default"] = std::visit([](const auto& v) { return Json(v); }, *key.default_value);
-    properties[key.name] = json;
+    properties[key.name] = key_schema(key);
     if (key.required) required.push_back(key.name);
   }
   for (const SectionInfo& child : schema.sections) {

@@ -79,6 +79,9 @@ class Validation {
       if (const KeyInfo* key = schema_.find_key(path, entry.key)) {
         places.emplace(child, entry.where);
         values.emplace(child, convert(*key, entry.value));
+        if (key->type == ValueType::items)
+          for (std::size_t n = 0; n < entry.value.items.size(); ++n)
+            places.emplace(child + '[' + std::to_string(n) + ']', entry.value.items[n].where);
       } else if (entry.key.find('.') == std::string::npos && schema_.find_section(child) != nullptr) {
         places.emplace(child, entry.where);
         section(child, entry.where, entry.value);

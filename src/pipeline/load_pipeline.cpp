@@ -6,6 +6,7 @@
 #include "pipeline/load_config.hpp"
 #include "pipeline/resolved.hpp"
 #include "pipeline/schema.hpp"
+#include "pipeline/wall_schema.hpp"
 
 namespace grainvdb {
 namespace {
@@ -48,6 +49,7 @@ void check_together(const Pipeline& p) {
                        {}});
   check_box(p, "select.region", p.select.region);
   check_box(p, "region", p.region);
+  check_walls(p);
 }
 
 }  // namespace

@@ -137,6 +137,7 @@ Sweep make_sweep(const MomentOrder& order, std::size_t number) {
     if (sweep.passes.size() <= entry.pass) sweep.passes.resize(entry.pass + 1);
     sweep.passes[entry.pass].push_back(entry.moment);
     sweep.columns |= entry.moment->columns;
+    if (entry.moment->kind == Moment::Kind::contacts) sweep.branch_kinds.insert(entry.moment->branch_kind);
   }
   return sweep;
 }
@@ -246,6 +247,16 @@ ColumnSet all_columns(const Plan& plan) {
   return all;
 }
 
+std::set<BranchKind> all_branch_kinds(const Plan& plan) {
+  std::set<BranchKind> all;
+  for (const Sweep& sweep : plan.sweeps) all.insert(sweep.branch_kinds.begin(), sweep.branch_kinds.end());
+  return all;
+}
+
+bool tells_walls(const std::set<BranchKind>& kinds) {
+  return kinds.contains(BranchKind::outside_walls) || kinds.contains(BranchKind::at_walls);
+}
+
 Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
   check_reach(pipeline);
   check_voxel(pipeline);
@@ -269,7 +280,8 @@ Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
   for (std::size_t s = 0; s < sweeps; ++s) plan.sweeps.push_back(make_sweep(moments, s));
   // The selection by type is made in every sweep.
   for (Sweep& sweep : plan.sweeps)
-    if (!pipeline.select.types.empty()) sweep.columns |= Column::type;
+    if (!pipeline.select.types.empty() || (tells_walls(sweep.branch_kinds) && !pipeline.walls.types.empty()))
+      sweep.columns |= Column::type;
   for (const auto& entry : moments.entries())
     if (kept.contains(entry.moment->name)) plan.means.push_back(entry.moment);
   plan_errors(plan, stages);

@@ -46,6 +46,7 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
               {"skipped_frames", lines(skipped, step)},
               {"bad_frames", lines(report.bad_frames, [](const BadFrame& frame) { return to_string(frame); })},
               {"averaging", lines(report.averaging, plain)},
+              {"walls", lines(report.walls, plain)},
               {"columns_read", lines(columns, plain)},
               {"computed", lines(plan.stages, [](const Stage* s) { return s->name + ": " + s->equation; })},
               {"not_needed", lines(plan.not_needed, plain)}});

@@ -31,11 +31,19 @@ std::string print(std::int64_t value) {
 std::string print(double value) {
   return print_number(value);
 }
+std::string print(const ConfigItem& item);
 template <class T>
 std::string print(const std::vector<T>& items) {
   std::string result;
   for (const T& item : items) result += (result.empty() ? "" : ", ") + print(item);
   return '[' + result + ']';
+}
+
+std::string print(const ConfigItem& item) {
+  std::string keys;
+  for (const auto& [name, value] : item.values)
+    keys += (keys.empty() ? "" : ", ") + name + ": " + std::visit([](const auto& v) { return print(v); }, value);
+  return '{' + item.kind + ": {" + keys + "}}";
 }
 
 void print_section(const Schema& schema, const std::map<std::string, ConfigValue>& values, const std::string& section,

@@ -104,6 +104,7 @@ OutputLayout Writer::layout(const Topology::Bounds& bounds, const std::vector<co
 /// have no frame.
 bool Writer::writes_mask() const {
   if (pipeline_.input.on_error == OnError::skip_frame && schedule_.windows.size() > 1) return true;
+  if (pipeline_.walls.kernel != WallSpec::Kernel::cut) return true;
   return std::any_of(plan_.stages.begin(), plan_.stages.end(),
                      [](const Stage* s) { return !s->additive || !s->compute; });
 }

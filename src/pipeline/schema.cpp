@@ -12,6 +12,7 @@
 #include "pipeline/average_keys.hpp"
 #include "pipeline/frame_range.hpp"
 #include "pipeline/text.hpp"
+#include "pipeline/wall_schema.hpp"
 
 namespace grainvdb {
 namespace {
@@ -327,12 +328,29 @@ std::string range_of(const KeyInfo& key) {
   return text.str();
 }
 
+// "a list of plane: {point, normal}, cylinder: {...} or ..."
+std::string list_of_kinds(const KeyInfo& key) {
+  std::string text = "a list of";
+  for (std::size_t k = 0; k < key.kinds.size(); ++k) {
+    const ItemKind& kind = key.kinds[k];
+    text += (k == 0 ? " " : k + 1 < key.kinds.size() ? ", " : " or ") + kind.name + ": {";
+    for (std::size_t n = 0; n < kind.keys.size(); ++n) text += (n == 0 ? "" : ", ") + kind.keys[n].name;
+    text += '}';
+  }
+  return text;
+}
+
 std::string list_of(const KeyInfo& key, const std::string& items) {
   if (key.fewest == key.most) return "a list of " + std::to_string(key.fewest) + ' ' + items;
   return "a list of " + items;
 }
 
 }  // namespace
+
+const ConfigValue* ConfigItem::find(const std::string& name) const {
+  const auto it = std::find_if(values.begin(), values.end(), [&](const auto& v) { return v.first == name; });
+  return it == values.end() ? nullptr : &it->second;
+}
 
 std::string SectionInfo::parent() const {
   const auto dot = path.rfind('.');
@@ -374,6 +392,7 @@ Schema make_schema(const StageRegistry& registry) {
   add_input(schema);
   add_contacts(schema);
   add_selection(schema);
+  add_walls(schema);
   add_method(schema);
   add_average_keys(schema);
   add_output(schema, registry);
@@ -398,6 +417,8 @@ std::string accepted(const KeyInfo& key) {
       return list_of(key, "whole numbers" + range_of(key));
     case ValueType::numbers:
       return list_of(key, "numbers" + range_of(key));
+    case ValueType::items:
+      return list_of_kinds(key);
     case ValueType::frame_range:
       return "a frame number or first:end:step, e.g. 0, 10:, -5:, ::2 or 10:50:2";
     case ValueType::window:

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -23,13 +24,25 @@ enum class ValueType {
   texts,  ///< a list of texts; a single text stands for a list of one
   integers,
   numbers,
+  items,        ///< a list of sections, each of one of several kinds
   frame_range,  ///< "3", "a:b" or "a:b:c"; kept as text
   window        ///< the text "all" or "none", or a number of frames
 };
 
+struct ConfigItem;
 /// A value of a pipeline file; which alternative follows from the type of its key.
 using ConfigValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>,
-                                 std::vector<std::int64_t>, std::vector<double>>;
+                                 std::vector<std::int64_t>, std::vector<double>, std::vector<ConfigItem>>;
+
+/// A section in a list of sections.
+struct ConfigItem {
+  std::string kind;
+  std::vector<std::pair<std::string, ConfigValue>> values;  ///< by name, defaults filled in
+  /// nullptr where there is none of that name.
+  const ConfigValue* find(const std::string& name) const;
+};
+
+struct ItemKind;
 
 struct KeyInfo {
   std::string section;  ///< path of the section, e.g. "input.contacts"; empty at the top
@@ -46,10 +59,18 @@ struct KeyInfo {
   bool infinite_allowed = false;
   std::size_t fewest = 1;  ///< items of a list
   std::size_t most = std::numeric_limits<std::size_t>::max();
-  std::string hint{};  ///< added to errors about this key
+  std::vector<ItemKind> kinds{};  ///< of the items of a list of sections
+  std::string hint{};             ///< added to errors about this key
   std::function<void(Pipeline&, const ConfigValue&)> apply{};
 
   std::string path() const { return section.empty() ? name : section + '.' + name; }
+};
+
+/// A kind of section in a list: an item `name: {keys}`.
+struct ItemKind {
+  std::string name;
+  std::string help;
+  std::vector<KeyInfo> keys;
 };
 
 struct SectionInfo {

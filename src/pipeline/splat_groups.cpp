@@ -32,7 +32,7 @@ SweepGroups::Pass group_pass(const Plan& plan, const std::vector<MomentPtr>& pas
     }
     const auto same = [&](const SplatGroup& g) {
       const Moment& other = *g.moments[0];
-      return other.kind == m->kind && m->kind != Moment::Kind::second_moments &&
+      return other.kind == m->kind && m->kind != Moment::Kind::second_moments && other.branch_kind == m->branch_kind &&
              other.line_integral == m->line_integral && other.in_double == m->in_double;
     };
     auto it = std::find_if(result.groups.begin(), result.groups.end(), same);
@@ -51,6 +51,10 @@ SweepGroups::Pass group_pass(const Plan& plan, const std::vector<MomentPtr>& pas
 }
 
 }  // namespace
+
+std::size_t SplatGroup::entries(const FrameView& frame) const {
+  return kind() == Moment::Kind::contacts ? frame.branches(branch_kind()).size() : frame.particles().size();
+}
 
 bool SplatGroup::buffered() const {
   return kind() == Moment::Kind::particle_gradients || kind() == Moment::Kind::particle_squares ||

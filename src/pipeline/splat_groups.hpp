@@ -20,6 +20,9 @@ struct SplatGroup {
   Halo halo;                   ///< enough for all of them
 
   Moment::Kind kind() const { return moments[0]->kind; }
+  BranchKind branch_kind() const { return moments[0]->branch_kind; }
+  /// How many particles or half branches of a frame it sums over.
+  std::size_t entries(const FrameView& frame) const;
   int value_count() const { return static_cast<int>(weight_of.size()); }
   /// Whether a buffer for all its channels is needed: those are added up in double precision.
   bool buffered() const;

@@ -17,6 +17,7 @@ const StageRegistry& StageRegistry::standard() {
     register_contact_stress(r);
     register_kinetic_stress(r);
     register_stress(r);
+    register_wall_force(r);
     register_gradients(r);
     register_rates(r);
     register_stress_invariants(r);

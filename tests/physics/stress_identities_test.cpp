@@ -9,10 +9,10 @@
 
 #include "grainvdb/kernel.hpp"
 #include "support/kernel_sums.hpp"
-#include "support/random.hpp"
 #include "support/reference.hpp"
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
+#include "support/static_columns.hpp"
 
 namespace grainvdb::testing {
 namespace {
@@ -91,66 +91,24 @@ TEST(StressIdentities, VolumeIntegralInAPeriodicBox) {
 // for z > c (physics section 6), whatever the branches' directions. The sum over the voxels of a layer stands for the
 // integral over the base, which is good to the lattice sum of W in two dimensions: 1e-4 of the weight at c/h = 6.
 TEST(StressIdentities, StaticColumn) {
-  Random random(31);
-  const double gravity = 9.81;
+  const StaticColumns columns(31);
   const double h = 0.5;
   const double c = 3;
-  Frame f;
-  f.file = "memory";
-  f.box = {{0, 0, -1}, {6, 6.5, 16}, {true, true, false}};
-  std::int64_t id = 0;
-  std::vector<double> height;
-  std::vector<double> weight;
-  for (int column = 0; column < 3; ++column) {
-    Vec3 x{random.uniform(0, 6), random.uniform(0, 6.5), 0};
-    const auto grains = static_cast<std::size_t>(10 + column);
-    std::vector<double> load(grains + 1);
-    std::vector<Vec3> site;
-    std::vector<double> radius;
-    std::vector<double> mass;
-    double z = 0;
-    for (std::size_t k = 0; k < grains; ++k) {
-      radius.push_back(random.uniform(0.4, 0.6));
-      mass.push_back(random.uniform(1, 3));
-      site.push_back({x[0] + random.uniform(-0.3, 0.3), x[1] + random.uniform(-0.3, 0.3), z + radius[k]});
-      z += 1.9 * radius[k];
-      height.push_back(site[k][2]);
-      weight.push_back(mass[k] * gravity);
-    }
-    for (std::size_t k = grains; k-- > 0;) load[k] = load[k + 1] + mass[k] * gravity;
-    // A fixed grain of type 2 below carries the column.
-    add_particle(f.particles, ++id, 2, {x[0], x[1], -0.5}, {0, 0, 0}, {0, 0, 0}, 0.5, 1);
-    for (std::size_t k = 0; k < grains; ++k) {
-      add_particle(f.particles, ++id, 1, site[k], {0, 0, 0}, {0, 0, 0}, radius[k], mass[k]);
-      const Vec3 below{f.particles.position[0][f.particles.size() - 2], f.particles.position[1][f.particles.size() - 2],
-                       f.particles.position[2][f.particles.size() - 2]};
-      const double share = random.uniform(0.3, 0.7);
-      Vec3 point;
-      for (std::size_t a = 0; a < 3; ++a) point[a] = site[k][a] + share * (below[a] - site[k][a]);
-      add_contact(f.contacts, id, id - 1, {0, 0, load[k]}, point);
-    }
-  }
   Pipeline p = make_pipeline(h, {0, 0, 0.1}, c, {"contact_stress"});
   set_option(p, "contact_stress", "line_integral", std::string("exact"));
   p.select.types = {1};
-  const Result r = run(p, {f});
+  const Result r = run(p, {columns.frame});
   const FieldCopy& s = r.only().field("contact_stress");
 
-  const auto cdf = [&](double zeta) {  // physics section 2
-    const double q = std::min(std::abs(zeta), 1.0);
-    const double half =
-        21.0 / 16 * (q - 5 * std::pow(q, 3) / 3 + 3 * std::pow(q, 5) - 8 * std::pow(q, 6) / 3 + 5 * std::pow(q, 7) / 7);
-    return 0.5 + (zeta < 0 ? -half : half);
-  };
-  double total = 0;
-  for (double w : weight) total += w;
+  const double total = columns.total_weight();
   for (int k = 6; k < 22; ++k) {  // from z = 3.35 > c, below which the floor's branches begin to count
     double force = 0;
     for (int i = 0; i < 12; ++i)
       for (int j = 0; j < 13; ++j) force -= h * h * static_cast<double>(s.at({i, j, k}, 8));
     const double z = 0.1 + (k + 0.5) * h;
     double expected = 0;
-    for (std::size_t n = 0; n < height.size(); ++n) expected += weight[n] * cdf((height[n] - z) / c);
+    for (std::size_t n = 0; n < columns.height.size(); ++n)
+      expected += columns.weight[n] * marginal_cdf((columns.height[n] - z) / c);
     EXPECT_NEAR(force, expected, 1e-4 * total) << "z = " << z;
     EXPECT_GT(expected, 10 * 1e-4 * total);
   }

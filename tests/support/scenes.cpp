@@ -121,6 +121,7 @@ std::vector<Frame> snapshots(Random& random, const Box& box, const std::vector<G
 Pipeline Scene::pipeline(std::vector<std::string> fields) const {
   Pipeline p = make_pipeline(voxel, origin, cutoff, std::move(fields));
   p.select = select;
+  if (select.empty()) p.walls.types = {3};  // of which there are none: no grain is a wall
   set_option(p, "contact_stress", "line_integral", std::string("exact"));
   return p;
 }

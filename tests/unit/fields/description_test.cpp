@@ -32,7 +32,7 @@ TEST(FieldDescriptions, NamesShapesAndUnits) {
         Known{"mean_diameter", 1, "m", false}, Known{"temperature", 1, "m^2/s^2", false},
         Known{"angular_velocity", 3, "1/s", false}, Known{"rotational_fluctuation", 1, "1/s^2", false},
         Known{"contact_stress", 9, "Pa", true}, Known{"kinetic_stress", 9, "Pa", true}, Known{"stress", 9, "Pa", true},
-        Known{"frames", 1, "1", true}, Known{"mask", 1, "1", true}}) {
+        Known{"wall_force", 3, "kg/(m^2 s^2)", true}, Known{"frames", 1, "1", true}, Known{"mask", 1, "1", true}}) {
     const Stage* s = registry.find(k.name);
     ASSERT_NE(s, nullptr) << k.name;
     EXPECT_EQ(s->components, k.components) << k.name;
@@ -137,6 +137,7 @@ TEST(FieldDescriptions, NamesTellMomentsApart) {
   add("contact_stress", {{"contact_stress", "line_integral", "exact"}});
   for (int n = 1; n <= 8; ++n)
     add("contact_stress", {{"contact_stress", "line_integral", "gauss" + std::to_string(n)}});
+  add("contact_stress", {{"contact_stress", "wall_contacts", "exclude"}});
   add("kinetic_stress", {});
   add("kinetic_stress", {{"kinetic_stress", "reference", "instantaneous"}});
   add("kinetic_stress", {{"kinetic_stress", "reference", "time_mean_moments"}});

@@ -24,6 +24,7 @@ inline StageRegistry make_registry() {
   register_contact_stress(r);
   register_kinetic_stress(r);
   register_stress(r);
+  register_wall_force(r);
   register_bookkeeping(r);
   register_gradients(r);
   return r;
@@ -33,7 +34,7 @@ inline StageRegistry make_registry() {
 class FakeView : public FrameView {
  public:
   const Particles& particles() const override { return p; }
-  const HalfBranches& branches() const override { return b; }
+  const HalfBranches& branches(BranchKind) const override { return b; }
   std::vector<Vec3> interpolate_frame(const Moment& n, const Moment& d) const override { return note("frame", n, d); }
   std::vector<Vec3> interpolate_mean(const Moment& n, const Moment& d) const override { return note("mean", n, d); }
   std::vector<double> deviation_factors(const Moment& d) const override {
@@ -62,7 +63,8 @@ class FakeView : public FrameView {
 
 /// The values per entry that a moment makes of a view.
 inline std::vector<double> values_of(const Moment& m, const FrameView& view) {
-  const std::size_t entries = m.kind == Moment::Kind::contacts ? view.branches().size() : view.particles().size();
+  const std::size_t entries =
+      m.kind == Moment::Kind::contacts ? view.branches(m.branch_kind).size() : view.particles().size();
   std::vector<double> q(entries * static_cast<std::size_t>(m.value_count()));
   m.values(view, q);
   return q;

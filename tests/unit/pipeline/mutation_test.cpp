@@ -15,6 +15,7 @@ const std::string seed_text =
     "lattice:\n  voxel: 0.5\n  origin: [0, 0, 0]\n"
     "kernel: {name: lucy, cutoff: 3}\n"
     "average: {window: all}\n"
+    "walls: {kernel: mask, box: [x_lo], surfaces: [{plane: {point: [0, 0, 0], normal: [0, 0, 1]}}]}\n"
     "output:\n  fields:\n    - phi\n    - temperature\n"
     "stages: {mu: {strict: false, axes: [x, y], least_pressure: 1}}\n"
     "limits: {extent: 1000, dense_voxels: 4e9}\n";
