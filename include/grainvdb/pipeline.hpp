@@ -12,6 +12,7 @@
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/options.hpp"
 #include "grainvdb/stage.hpp"
+#include "grainvdb/trace_spec.hpp"
 #include "grainvdb/walls.hpp"
 
 namespace grainvdb {
@@ -58,11 +59,15 @@ struct Pipeline {
   std::vector<std::string> fields;   ///< what to write, in this order
   StageSettings stages;              ///< option values of every stage, defaults filled in
   std::vector<std::string> formats;  ///< of the output: hdf5, vdb
+  std::optional<TraceSpec> trace;    ///< histories of tracers, where they are wanted
   Limits limits;
   std::string resolved;                   ///< this pipeline as YAML with all defaults, for the provenance
   std::map<std::string, Location> where;  ///< where each key stands, e.g. "kernel.cutoff"; overrides stand at "--set"
   Location location(const std::string& key) const;  ///< of a key, or of the file when the key was not given
 };
+
+/// What must be computed: the fields that are written, then those that the tracers need.
+std::vector<std::string> computed_fields(const Pipeline& pipeline);
 
 /// Reads a pipeline file. `overrides` are "a.b=value" texts that win over the file. Relative input paths are taken
 /// relative to the folder of the file. Throws ConfigError with file and line for anything that cannot be run as

@@ -16,6 +16,8 @@
 #include "grainvdb/plan.hpp"
 #include "grainvdb/region.hpp"
 #include "grainvdb/sparse_field.hpp"
+#include "grainvdb/trace_report.hpp"
+#include "grainvdb/tracer_sink.hpp"
 
 namespace grainvdb {
 
@@ -39,7 +41,8 @@ struct RunReport {
   std::vector<BadFrame> bad_frames;                         ///< that were left out
   std::vector<std::string> averaging;                       ///< what there is to say of the averages, in words
   std::vector<std::string> walls;                           ///< where they are and what is done about them, in words
-  std::vector<std::string> files;                           ///< written
+  std::vector<std::string> files;                           ///< written, those of the tracers apart
+  std::optional<TraceReport> trace;                         ///< where there were tracers
   ReadCounters read;
 };
 
@@ -47,6 +50,9 @@ struct RunReport {
 /// against the selection, extents against the limits, columns against the needs. Throws ConfigError, InputError or
 /// LimitError. `grainvdb validate` calls it too. Returns the lattice with its periods.
 Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source);
+
+/// The same for the tracers, where there are any. Throws ConfigError.
+void check_trace_against_input(const Pipeline& pipeline, const FrameSource& source);
 
 /// Reads frame k with every column that the run will need, and makes the checks that the run makes of each frame before
 /// it computes anything. Throws InputError, IoError or LimitError.
@@ -96,6 +102,14 @@ struct CheckpointOptions {
 /// when it is finished, the sums of the one at hand after each interval. Throws ConfigError where the folder is that of
 /// a run of another version or pipeline, or of other inputs; InputError where it is damaged; IoError where another run
 /// is at work in it.
+///
+/// Without tracer sinks nothing is traced; without field sinks nothing is written but the histories of the tracers, and
+/// the checkpoint is not used.
+RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
+                       const std::vector<std::unique_ptr<FieldSink>>& sinks,
+                       const std::vector<std::unique_ptr<TracerSink>>& tracer_sinks,
+                       const std::function<void(const Progress&)>& progress = {},
+                       const std::optional<CheckpointOptions>& checkpoint = {});
 RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                        const std::vector<std::unique_ptr<FieldSink>>& sinks,
                        const std::function<void(const Progress&)>& progress = {},

@@ -30,6 +30,7 @@ struct TracerLayout {
   Box box;                        ///< of the simulation
   std::vector<FieldMeta> fields;  ///< recorded along the way, in this order
   std::string length_unit, time_unit;  ///< time_unit is "step" where the dump has no time
+  std::string time_meaning;            ///< of the times of samples, e.g. "time of the simulation"
   std::string unit_system;             ///< as UnitSystem::name; "unspecified" where the dump names none
 };
 

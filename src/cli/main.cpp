@@ -23,6 +23,7 @@ constexpr const char* footer = R"(Examples:
   grainvdb validate pipelines/shear_cell.yaml
   grainvdb run pipelines/shear_cell.yaml --output result
   grainvdb run pipelines/shear_cell.yaml --set kernel.cutoff=3e-3 --frames ::2
+  grainvdb trace pipelines/silo_elements.yaml --output result
   grainvdb report result
 
 Exit codes:
@@ -94,6 +95,7 @@ int run(int argc, char** argv) {
   app.footer(footer);
   app.require_subcommand(1);
   add_run(app);
+  add_trace(app);
   add_info(app);
   add_init(app);
   add_validate(app);

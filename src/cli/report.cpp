@@ -45,6 +45,17 @@ double peak_memory() {
   return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
+std::string describe_trace(const TraceReport& trace) {
+  std::string text;
+  for (const std::string& line : grainvdb::describe(trace))
+    if (line != trace_warning(trace)) text += "trace: " + line + '\n';
+  text += files_written(trace.files);
+  const std::string h5md = file_ending_in(trace.files, ".h5"), sidecar = file_ending_in(trace.files, ".xmf2");
+  if (h5md.empty()) return text;
+  return text + "look at them:\n  paraview " + sidecar + "\n  python3 -c \"import h5py; print(list(h5py.File('" + h5md +
+         "')['particles/tracers']))\"\n";
+}
+
 }  // namespace
 
 std::string warnings(const RunReport& report) {
@@ -56,6 +67,8 @@ std::string warnings(const RunReport& report) {
   if (n > shown)
     text += "grainvdb: warning: left out " + counted(n - shown, "more bad frame") +
             ", which the result lists in /provenance/bad_frames\n";
+  if (report.trace && !report.trace->is_meaningful())
+    text += "grainvdb: warning: " + trace_warning(*report.trace) + '\n';
   return text;
 }
 
@@ -82,6 +95,7 @@ std::string describe(const RunReport& report) {
   for (const auto& [reason, count] : report.masked)
     text << "mask: " << counted(count, "voxel") << ' ' << reason << meaning(reason) << '\n';
   text << files_written(report.files);
+  if (report.trace) text << describe_trace(*report.trace);
   return text.str();
 }
 

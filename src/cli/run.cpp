@@ -27,6 +27,14 @@ constexpr const char* footer = R"(Examples:
 Files appear under their names only when they are complete. Ctrl-C ends the run after the frame at hand and leaves no
 file; a second Ctrl-C ends it at once and may leave a temporary one.)";
 
+constexpr const char* trace_footer = R"(Examples:
+  grainvdb trace pipelines/silo_elements.yaml
+  grainvdb trace pipelines/silo_elements.yaml --output paths --set trace.record=[phi,mu]
+  grainvdb trace pipelines/silo_elements.yaml --set trace.through=frames --set average.window=1 --frames 3:
+
+Writes nothing but the histories that the section 'trace' of the pipeline file describes; 'run' writes them along with
+the fields. 'grainvdb schema --text' explains its keys.)";
+
 struct Options {
   PipelineArguments pipeline;
   std::string output = "output";
@@ -37,25 +45,33 @@ struct Options {
   bool quiet = false;
 };
 
-std::vector<std::unique_ptr<FieldSink>> make_sinks(const Pipeline& pipeline, const std::string& folder) {
-  std::vector<std::unique_ptr<FieldSink>> sinks;
-  for (const std::string& format : pipeline.formats)
-    for (const SinkInfo& sink : sink_registry())
+template <class Sink, class Registry>
+std::vector<std::unique_ptr<Sink>> make_sinks(const std::vector<std::string>& formats, const Registry& registry,
+                                              const std::string& folder) {
+  std::vector<std::unique_ptr<Sink>> sinks;
+  for (const std::string& format : formats)
+    for (const auto& sink : registry)
       if (sink.name == format) sinks.push_back(sink.make(folder));
   return sinks;
 }
 
-void run(const Options& options) {
+Pipeline load(const Options& options) {
+  std::vector<std::string> overrides = options.pipeline.overrides;
+  if (!options.frames.empty()) overrides.push_back("frames=" + options.frames);
+  return load_pipeline(options.pipeline.file, overrides);
+}
+
+void run(const Pipeline& pipeline, const Options& options) {
   std::optional<tbb::global_control> threads;
   if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
 
-  std::vector<std::string> overrides = options.pipeline.overrides;
-  if (!options.frames.empty()) overrides.push_back("frames=" + options.frames);
-  const Pipeline pipeline = load_pipeline(options.pipeline.file, overrides);
   const Plan plan = make_plan(pipeline);
   check_output_folder(options.output);
   const auto source = open_input(pipeline, plan);
-  const auto sinks = make_sinks(pipeline, options.output);
+  const auto sinks = make_sinks<FieldSink>(pipeline.formats, sink_registry(), options.output);
+  std::vector<std::unique_ptr<TracerSink>> tracer_sinks;
+  if (pipeline.trace)
+    tracer_sinks = make_sinks<TracerSink>(pipeline.trace->formats, tracer_sink_registry(), options.output);
 
   std::optional<CheckpointOptions> checkpoint;
   if (options.resume) checkpoint = CheckpointOptions{options.output, options.checkpoint_interval};
@@ -68,10 +84,36 @@ void run(const Options& options) {
       check_for_interrupt();
       if (!options.quiet) line.show(progress);
     };
-    report = run_pipeline(pipeline, plan, *source, sinks, show, checkpoint);
+    report = run_pipeline(pipeline, plan, *source, sinks, tracer_sinks, show, checkpoint);
   }
   std::cerr << warnings(report);
   if (!options.quiet) std::cout << describe(report);
+}
+
+void trace(const Options& options) {
+  Pipeline pipeline = load(options);
+  if (!pipeline.trace)
+    throw ConfigError({Location{pipeline.file},
+                       "there is nothing to trace: the section 'trace' is missing",
+                       {},
+                       "trace, with the seeds of tracers",
+                       "'grainvdb schema --text' explains its keys"});
+  pipeline.fields.clear();
+  pipeline.formats.clear();
+  run(pipeline, options);
+}
+
+void add_options(CLI::App& command, Options& options) {
+  add_pipeline_arguments(command, options.pipeline);
+  command.add_option("-o,--output", options.output, "Folder for the results; made where there is none")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command.add_option("--frames", options.frames, "Frames first:end:step, short for --set frames=...")
+      ->type_name("A:B:C");
+  command.add_option("--threads", options.threads, "Threads to use; all processors by default")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
+  command.add_flag("-q,--quiet", options.quiet, "Print nothing but errors and warnings");
 }
 
 }  // namespace
@@ -79,15 +121,7 @@ void run(const Options& options) {
 void add_run(CLI::App& app) {
   CLI::App* command = app.add_subcommand("run", "Run a pipeline: read dumps, compute fields, write them");
   const auto options = std::make_shared<Options>();
-  add_pipeline_arguments(*command, options->pipeline);
-  command->add_option("-o,--output", options->output, "Folder for the results; made where there is none")
-      ->type_name("DIR")
-      ->capture_default_str();
-  command->add_option("--frames", options->frames, "Frames first:end:step, short for --set frames=...")
-      ->type_name("A:B:C");
-  command->add_option("--threads", options->threads, "Threads to use; all processors by default")
-      ->type_name("N")
-      ->check(CLI::Range(1, 4096));
+  add_options(*command, *options);
   CLI::Option* resume = command->add_flag(
       "--resume", options->resume,
       "Save the state of the run in the output folder, and go on from there where it was interrupted before");
@@ -98,9 +132,16 @@ void add_run(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->needs(resume)
       ->capture_default_str();
-  command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors and warnings");
   command->footer(footer);
-  command->callback([options] { run(*options); });
+  command->callback([options] { run(load(*options), *options); });
+}
+
+void add_trace(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("trace", "Move tracers with the material and write what they meet");
+  const auto options = std::make_shared<Options>();
+  add_options(*command, *options);
+  command->footer(trace_footer);
+  command->callback([options] { trace(*options); });
 }
 
 }  // namespace grainvdb::cli

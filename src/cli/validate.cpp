@@ -42,6 +42,7 @@ void check(const Options& options) {
   if (!options.no_input) {
     const auto source = open_input(pipeline, plan);
     const Lattice lattice = check_against_input(pipeline, plan, *source);
+    check_trace_against_input(pipeline, *source);
     check_first_frame(pipeline, plan, lattice, *source);
   }
 }

@@ -243,7 +243,8 @@ void Stream::require_material() const {
 }
 
 DerivedFields Stream::derive() {
-  const std::set<std::string> wanted(pipeline_.fields.begin(), pipeline_.fields.end());
+  const std::vector<std::string> computed = computed_fields(pipeline_);
+  const std::set<std::string> wanted(computed.begin(), computed.end());
   std::set<std::string> kept = wanted;
   for (const Stage* stage : plan_.stages)
     if (!stage->error_of.empty()) kept.insert(stage->error_of);

@@ -80,6 +80,17 @@ std::vector<T> list(const KeyInfo& key, const ConfigNode& node, T (*item)(const 
   return result;
 }
 
+std::vector<double> numbers(const KeyInfo& key, const ConfigNode& node) {
+  if (key.one_for_all && node.kind == ConfigNode::Kind::scalar) return std::vector<double>(key.most, number(key, node));
+  return list<double>(key, node, &number);
+}
+
+Vec3 point(const KeyInfo& key, const ConfigNode& node) {
+  if (node.kind != ConfigNode::Kind::sequence || node.items.size() != 3)
+    refuse(key, node, "has an item that is no place");
+  return {number(key, node.items[0]), number(key, node.items[1]), number(key, node.items[2])};
+}
+
 std::vector<std::string> texts(const KeyInfo& key, const ConfigNode& node) {
   std::vector<std::string> result;
   if (node.kind == ConfigNode::Kind::scalar) {
@@ -168,7 +179,9 @@ ConfigValue convert(const KeyInfo& key, const ConfigNode& node) {
     case ValueType::integers:
       return list<std::int64_t>(key, node, &integer);
     case ValueType::numbers:
-      return list<double>(key, node, &number);
+      return numbers(key, node);
+    case ValueType::points:
+      return list<Vec3>(key, node, &point);
     case ValueType::items:
       return list<ConfigItem>(key, node, &item);
     case ValueType::frame_range:

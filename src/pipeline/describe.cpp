@@ -128,6 +128,16 @@ std::string window_text(const Pipeline& pipeline) {
   return text;
 }
 
+std::string trace_text(const TraceSpec& trace) {
+  const bool adaptive = trace.scheme == TraceSpec::Scheme::adaptive;
+  std::string text = "traced: through the ";
+  text += trace.through == TraceSpec::Through::mean ? "time mean" : "output times";
+  if (trace.direction == TraceSpec::Direction::backward) text += ", back in time";
+  text += adaptive ? ", by steps of order 3(2)" : ", by Runge-Kutta steps of order 4";
+  text += ", recording " + joined(trace.record, "no field") + (trace.strain ? " and the strain" : "");
+  return text + ", as " + joined(trace.formats, "nothing") + '\n';
+}
+
 }  // namespace
 
 std::string describe(const Plan& plan, const Pipeline& pipeline) {
@@ -154,6 +164,7 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
           "\n  for P particles and C contacts a frame with i periodic images each, and V voxels in the leaves that are "
           "summed\n";
   text += "written: " + joined(pipeline.fields, "nothing") + " as " + joined(pipeline.formats, "nothing") + '\n';
+  if (pipeline.trace) text += trace_text(*pipeline.trace);
   text += "not read: " + joined(columns_not_read(plan), "nothing is left out") + '\n';
   text += "not needed: " + joined(plan.not_needed, "no stage is left out") + '\n';
   return text;

@@ -51,6 +51,12 @@ std::string describe_dot(const Plan& plan, const Pipeline& pipeline) {
     node("output", "output", "shape=folder");
     edges += edge("field:" + field, "output");
   }
+  if (pipeline.trace) {
+    node("tracers", "tracers", "shape=folder");
+    Pipeline traced = pipeline;
+    traced.fields.clear();
+    for (const std::string& field : computed_fields(traced)) edges += edge("field:" + field, "tracers");
+  }
   return "digraph grainvdb {\n  rankdir=LR;\n" + nodes + edges + "}\n";
 }
 

@@ -67,8 +67,14 @@ Json value_schema(const KeyInfo& key) {
       return text_schema(key);
     case ValueType::integers:
       return list_schema(key, number_schema(key, "integer"));
-    case ValueType::numbers:
-      return list_schema(key, number_schema(key, "number"));
+    case ValueType::numbers: {
+      const Json list = list_schema(key, number_schema(key, "number"));
+      return key.one_for_all ? Json{{"anyOf", {list, number_schema(key, "number")}}} : list;
+    }
+    case ValueType::points: {
+      const Json place{{"type", "array"}, {"items", number_schema(key, "number")}, {"minItems", 3}, {"maxItems", 3}};
+      return list_schema(key, place);
+    }
     case ValueType::texts: {
       Json list = list_schema(key, text_schema(key));
       list["uniqueItems"] = true;

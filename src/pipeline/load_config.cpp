@@ -97,6 +97,11 @@ class Validation {
         throw ConfigError({where, "the section '" + s.path + "' is missing", {}, names_in(s.path), {}});
   }
 
+  void add_defaults() {
+    for (const KeyInfo& key : schema_.keys)
+      if (key.default_value && has_defaults(key.section)) values.emplace(key.path(), *key.default_value);
+  }
+
   std::map<std::string, ConfigValue> values;
   std::map<std::string, Location> places;
 
@@ -104,6 +109,14 @@ class Validation {
   std::string names_in(const std::string& path) const {
     const auto names = schema_.names_in(path);
     return names.empty() ? "nothing: there is nothing to set" : join_choices(names);
+  }
+
+  // Whether no optional section around a key has been left out.
+  bool has_defaults(const std::string& path) const {
+    const SectionInfo* section = schema_.find_section(path);
+    if (section == nullptr) return true;
+    if (section->optional && !places.contains(path)) return false;
+    return has_defaults(section->parent());
   }
 
   [[noreturn]] void unknown(const std::string& path, const ConfigEntry& entry) const {
@@ -138,8 +151,7 @@ CheckedConfig load_config(const std::string& file, const std::vector<std::string
     for (const std::string& text : overrides) apply_override(root, text, schema);
   validation.check_version(root, file);
   validation.section("", {file, 0}, root);
-  for (const KeyInfo& key : schema.keys)
-    if (key.default_value) validation.values.emplace(key.path(), *key.default_value);
+  validation.add_defaults();
   return {std::move(validation.values), std::move(validation.places)};
 }
 

@@ -6,6 +6,7 @@
 #include "pipeline/load_config.hpp"
 #include "pipeline/resolved.hpp"
 #include "pipeline/schema.hpp"
+#include "pipeline/trace_schema.hpp"
 #include "pipeline/wall_schema.hpp"
 
 namespace grainvdb {
@@ -20,6 +21,13 @@ void check_box(const Pipeline& p, const std::string& section, const std::optiona
 
 // What no single key can tell.
 void check_together(const Pipeline& p) {
+  if (p.fields.empty() && !p.trace)
+    throw ConfigError({Location{p.file},
+                       "the section 'output' is missing",
+                       {},
+                       "output, with the fields to write, or trace, with the seeds of tracers",
+                       {}});
+  check_trace(p);
   const auto& contacts = p.input.contacts;
   if (!contacts.compute.empty() && !contacts.columns.empty())
     throw ConfigError({p.location("input.contacts"),
@@ -53,6 +61,18 @@ void check_together(const Pipeline& p) {
 }
 
 }  // namespace
+
+std::vector<std::string> computed_fields(const Pipeline& pipeline) {
+  std::vector<std::string> all = pipeline.fields;
+  const auto need = [&](const std::string& name) {
+    if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+  };
+  if (!pipeline.trace) return all;
+  need("velocity");
+  if (pipeline.trace->strain) need("shear_rate");
+  for (const std::string& name : pipeline.trace->record) need(name);
+  return all;
+}
 
 Location Pipeline::location(const std::string& key) const {
   const auto it = where.find(key);

@@ -81,7 +81,8 @@ void add_sweep(const Plan& plan, const Pipeline& pipeline, std::size_t sweep, Me
 }
 
 bool is_wanted(const Pipeline& pipeline, const std::string& field) {
-  return std::find(pipeline.fields.begin(), pipeline.fields.end(), field) != pipeline.fields.end();
+  const std::vector<std::string> fields = computed_fields(pipeline);
+  return std::find(fields.begin(), fields.end(), field) != fields.end();
 }
 
 /// Components that exist at the same time while fields are derived one after another.

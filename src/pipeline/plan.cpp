@@ -20,7 +20,9 @@ namespace {
 class StageOrder {
  public:
   StageOrder(const Pipeline& pipeline, const StageRegistry& registry) : pipeline_(pipeline), registry_(registry) {
-    for (const std::string& field : pipeline.fields) visit(field, "output.fields");
+    for (const std::string& field : pipeline.fields) visit(field, asks_);
+    if (pipeline.trace) asks_ = "trace";
+    for (const std::string& field : computed_fields(pipeline)) visit(field, asks_);
   }
 
   std::vector<const Stage*> ordered() const {
@@ -46,15 +48,14 @@ class StageOrder {
     if (const auto it = std::find(path_.begin(), path_.end(), field); it != path_.end()) {
       std::string cycle;
       for (auto step = it; step != path_.end(); ++step) cycle += *step + " -> ";
-      throw ConfigError(
-          {pipeline_.location("output.fields"), "the stages need one another in a circle", cycle + field, {}, {}});
+      throw ConfigError({pipeline_.location(asks_), "the stages need one another in a circle", cycle + field, {}, {}});
     }
     if (needs_.contains(field)) return;
     const Stage* stage = registry_.find(field);
     if (stage == nullptr) {
       std::vector<std::string> names;
       for (const Stage& s : registry_.stages()) names.push_back(s.name);
-      throw ConfigError({pipeline_.location("output.fields"),
+      throw ConfigError({pipeline_.location(asks_),
                          "no stage makes the field " + quote_text(field) + ", which " + asker + " asks for",
                          {},
                          join_choices(names),
@@ -77,6 +78,7 @@ class StageOrder {
 
   const Pipeline& pipeline_;
   const StageRegistry& registry_;
+  std::string asks_ = "output.fields";  // the key that wants fields now
   std::vector<std::string> path_;
   std::map<std::string, StageNeeds> needs_;
 };

@@ -32,6 +32,9 @@ std::string print(double value) {
   return print_number(value);
 }
 std::string print(const ConfigItem& item);
+std::string print(const Vec3& place) {
+  return '[' + print(place[0]) + ", " + print(place[1]) + ", " + print(place[2]) + ']';
+}
 template <class T>
 std::string print(const std::vector<T>& items) {
   std::string result;

@@ -12,6 +12,7 @@
 #include "pipeline/schedule.hpp"
 #include "pipeline/stopwatch.hpp"
 #include "pipeline/stream.hpp"
+#include "pipeline/trace_pass.hpp"
 #include "pipeline/written_box.hpp"
 
 namespace grainvdb {
@@ -127,23 +128,42 @@ void Writer::commit(RunReport& report) {
 
 RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                        const std::vector<std::unique_ptr<FieldSink>>& sinks,
+                       const std::vector<std::unique_ptr<TracerSink>>& tracer_sinks,
                        const std::function<void(const Progress&)>& progress,
                        const std::optional<CheckpointOptions>& checkpoint) {
-  Writer writer(pipeline, plan, source, sinks);
-  std::optional<Checkpoint> kept;
-  if (checkpoint) kept.emplace(*checkpoint, key_of_run(pipeline, source));
+  std::optional<TracePass> tracers;
+  if (pipeline.trace && !tracer_sinks.empty()) tracers.emplace(pipeline, plan, source, tracer_sinks);
   RunReport report;
-  try {
-    report = stream_fields(
-        pipeline, plan, source, [&](OutputFields output) { writer.take(std::move(output)); }, progress, {},
-        kept ? &*kept : nullptr);
-  } catch (...) {
-    writer.finish();  // what failed in writing is earlier
-    throw;
+  std::optional<Checkpoint> kept;
+  if (sinks.empty() && tracers) {
+    report = tracers->compute(progress);
+  } else {
+    Writer writer(pipeline, plan, source, sinks);
+    if (checkpoint) kept.emplace(*checkpoint, key_of_run(pipeline, source));
+    const bool together = tracers && tracers->goes_along();
+    const auto take = [&](OutputFields output) {
+      if (together) tracers->take(output);
+      writer.take(std::move(output));
+    };
+    try {
+      report = stream_fields(pipeline, plan, source, take, progress, {}, kept ? &*kept : nullptr);
+      if (tracers && !together) tracers->compute(progress);
+    } catch (...) {
+      writer.finish();  // what failed in writing is earlier
+      throw;
+    }
+    writer.commit(report);
   }
-  writer.commit(report);
+  if (tracers) tracers->commit(report);
   if (kept) kept->remove();
   return report;
+}
+
+RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
+                       const std::vector<std::unique_ptr<FieldSink>>& sinks,
+                       const std::function<void(const Progress&)>& progress,
+                       const std::optional<CheckpointOptions>& checkpoint) {
+  return run_pipeline(pipeline, plan, source, sinks, {}, progress, checkpoint);
 }
 
 }  // namespace grainvdb

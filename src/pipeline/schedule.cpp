@@ -90,4 +90,13 @@ std::vector<std::size_t> frames_of(const WindowSchedule& schedule, std::span<con
   return frames;
 }
 
+std::vector<std::vector<std::size_t>> windows_of(const Pipeline& pipeline, std::span<const std::size_t> wanted) {
+  std::vector<std::vector<std::size_t>> windows;
+  for (const Window& window : schedule_windows(time_windows(pipeline), wanted.size()).windows) {
+    const auto frames = wanted.subspan(window.frames.first, window.frames.count);
+    windows.emplace_back(frames.begin(), frames.end());
+  }
+  return windows;
+}
+
 }  // namespace grainvdb

@@ -38,4 +38,7 @@ std::string describe_blocks(const WindowSchedule& schedule);
 /// Those of the frames `wanted` that are in any window.
 std::vector<std::size_t> frames_of(const WindowSchedule& schedule, std::span<const std::size_t> wanted);
 
+/// The frames of each output time.
+std::vector<std::vector<std::size_t>> windows_of(const Pipeline& pipeline, std::span<const std::size_t> wanted);
+
 }  // namespace grainvdb

@@ -11,13 +11,13 @@
 #include "grainvdb/units.hpp"
 #include "pipeline/average_keys.hpp"
 #include "pipeline/frame_range.hpp"
+#include "pipeline/key_builders.hpp"
 #include "pipeline/text.hpp"
+#include "pipeline/trace_schema.hpp"
 #include "pipeline/wall_schema.hpp"
 
 namespace grainvdb {
 namespace {
-
-constexpr const char* no_unit_hint = "Numbers are given without their unit, in the unit system of the dump.";
 
 // The folder of the pipeline file as the beginning of a pattern: its own name has no wildcards.
 std::string without_wildcards(const std::string& folder) {
@@ -39,38 +39,6 @@ std::vector<std::string> input_paths(const Pipeline& pipeline, const ConfigValue
     result.push_back(((is_pattern ? folder_of_pattern : folder) / path).string());
   }
   return result;
-}
-
-Vec3 vector_of(const ConfigValue& value) {
-  const auto& v = std::get<std::vector<double>>(value);
-  return {v.at(0), v.at(1), v.at(2)};
-}
-
-KeyInfo number_key(std::string section, std::string name, std::string unit, std::string help,
-                   std::function<void(Pipeline&, const ConfigValue&)> apply) {
-  KeyInfo key{std::move(section), std::move(name), ValueType::number, std::move(help), std::move(unit)};
-  key.minimum = 0;
-  key.above_minimum = true;
-  key.hint = no_unit_hint;
-  key.apply = std::move(apply);
-  return key;
-}
-
-KeyInfo texts_key(std::string section, std::string name, std::string help, std::vector<std::string> choices,
-                  std::function<void(Pipeline&, const ConfigValue&)> apply) {
-  KeyInfo key{std::move(section), std::move(name), ValueType::texts, std::move(help)};
-  key.choices = std::move(choices);
-  key.apply = std::move(apply);
-  return key;
-}
-
-KeyInfo vector_key(std::string section, std::string name, std::string help,
-                   std::function<void(Pipeline&, const ConfigValue&)> apply) {
-  KeyInfo key{std::move(section), std::move(name), ValueType::numbers, std::move(help), "length"};
-  key.fewest = key.most = 3;
-  key.hint = no_unit_hint;
-  key.apply = std::move(apply);
-  return key;
 }
 
 // The two corners of a box.
@@ -215,7 +183,7 @@ void add_method(Schema& schema) {
 }
 
 void add_output(Schema& schema, const StageRegistry& registry) {
-  schema.sections.push_back({"output", "What to write.", true});
+  schema.sections.push_back({"output", "What to write; needed where there is no trace.", false, true});
   std::vector<std::string> names;
   for (const Stage& stage : registry.stages()) names.push_back(stage.name);
   auto fields = texts_key("output", "fields", "Fields, in the order in which they are written.", names,
@@ -396,6 +364,7 @@ Schema make_schema(const StageRegistry& registry) {
   add_method(schema);
   add_average_keys(schema);
   add_output(schema, registry);
+  add_trace(schema, registry);
   add_stages(schema, registry);
   add_limits(schema);
   return schema;
@@ -416,7 +385,9 @@ std::string accepted(const KeyInfo& key) {
     case ValueType::integers:
       return list_of(key, "whole numbers" + range_of(key));
     case ValueType::numbers:
-      return list_of(key, "numbers" + range_of(key));
+      return (key.one_for_all ? "a number, or " : "") + list_of(key, "numbers" + range_of(key));
+    case ValueType::points:
+      return "a list of places, each [x, y, z]" + range_of(key);
     case ValueType::items:
       return list_of_kinds(key);
     case ValueType::frame_range:

@@ -25,6 +25,7 @@ enum class ValueType {
   integers,
   numbers,
   items,        ///< a list of sections, each of one of several kinds
+  points,       ///< a list of lists of three numbers
   frame_range,  ///< "3", "a:b" or "a:b:c"; kept as text
   window        ///< the text "all" or "none", or a number of frames
 };
@@ -32,7 +33,7 @@ enum class ValueType {
 struct ConfigItem;
 /// A value of a pipeline file; which alternative follows from the type of its key.
 using ConfigValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>,
-                                 std::vector<std::int64_t>, std::vector<double>, std::vector<ConfigItem>>;
+                                 std::vector<std::int64_t>, std::vector<double>, std::vector<Vec3>, std::vector<ConfigItem>>;
 
 /// A section in a list of sections.
 struct ConfigItem {
@@ -59,6 +60,7 @@ struct KeyInfo {
   bool infinite_allowed = false;
   std::size_t fewest = 1;  ///< items of a list
   std::size_t most = std::numeric_limits<std::size_t>::max();
+  bool one_for_all = false;       ///< of a list of fixed length: one number may stand for all items
   std::vector<ItemKind> kinds{};  ///< of the items of a list of sections
   std::string hint{};             ///< added to errors about this key
   std::function<void(Pipeline&, const ConfigValue&)> apply{};
@@ -77,6 +79,7 @@ struct SectionInfo {
   std::string path;
   std::string help;
   bool required = false;  ///< wherever the section around it is given
+  bool optional = false;  ///< defaults of keys in it and below hold only where it is given
 
   std::string parent() const;
   std::string name() const;

@@ -128,7 +128,7 @@ void H5mdSink::create_element(const std::string& name, int components, const std
   hdf5_->text_attribute(path + "/step", "long_name", "step of the frame, or number of the integration step");
   hdf5_->create_growing_dataset<double>(path + "/time", {}, {1024});
   hdf5_->text_attribute(path + "/time", "units", layout_->time_unit);
-  hdf5_->text_attribute(path + "/time", "long_name", "time");
+  hdf5_->text_attribute(path + "/time", "long_name", layout_->time_meaning);
 }
 
 // MDAnalysis takes the edges from a group over time, as vectors, and nothing else.

@@ -145,6 +145,7 @@ TEST(H5mdSink, DescribesEveryDatasetAndUsesNoUnitThatMdAnalysisWouldReject) {
   }
   EXPECT_EQ(file.text_of(group + "position/value", "units"), "m");
   EXPECT_EQ(file.text_of(group + "position/time", "units"), "s");
+  EXPECT_EQ(file.text_of(group + "position/time", "long_name"), "time of the simulation");
   EXPECT_EQ(file.text_of(group + "stress/value", "units"), "Pa");
   EXPECT_EQ(file.text_of(group + "stress/value", "equation"), "Σ stress W (6)");
   EXPECT_THAT(file.attribute<std::uint8_t>(group + "stop/value", "flag_values"), ElementsAre(0, 1, 2, 3));

@@ -23,6 +23,7 @@ struct TracerScene {
     l.fields = fields;
     l.length_unit = std::string("m");
     l.time_unit = std::string("s");
+    l.time_meaning = std::string("time of the simulation");
     l.unit_system = "si";
     return l;
   }

@@ -1,0 +1,28 @@
+#pragma once
+/// Declarations of keys of common kinds.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pipeline/schema.hpp"
+
+namespace grainvdb {
+
+inline constexpr const char* no_unit_hint = "Numbers are given without their unit, in the unit system of the dump.";
+
+using ApplyValue = std::function<void(Pipeline&, const ConfigValue&)>;
+
+/// A positive number.
+KeyInfo number_key(std::string section, std::string name, std::string unit, std::string help, ApplyValue apply);
+
+/// A list of texts; one text stands for a list of one.
+KeyInfo texts_key(std::string section, std::string name, std::string help, std::vector<std::string> choices,
+                  ApplyValue apply);
+
+/// Three lengths.
+KeyInfo vector_key(std::string section, std::string name, std::string help, ApplyValue apply);
+
+/// The value of a vector key.
+Vec3 vector_of(const ConfigValue& value);
+
+}  // namespace grainvdb

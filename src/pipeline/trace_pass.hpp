@@ -1,0 +1,39 @@
+#pragma once
+/// How the tracers of a pipeline get their output times: along with the fields that are written, or in a pass of their
+/// own.
+#include <functional>
+#include <vector>
+
+#include "pipeline/stopwatch.hpp"
+#include "pipeline/trace_run.hpp"
+
+namespace grainvdb {
+
+class TracePass {
+ public:
+  /// Makes the checks of the input. All arguments must outlive the pass. Throws as TraceRun does.
+  TracePass(const Pipeline& pipeline, const Plan& plan, FrameSource& source, const TraceRun::Sinks& sinks);
+
+  /// Whether the output times are wanted in the order of time, each whole.
+  bool goes_along() const { return !backward_; }
+  void take(const OutputFields& output) {
+    clock_.time("trace", [&] { run_.take(output); });
+  }
+
+  /// Computes the output times in the order that the tracers want.
+  RunReport compute(const std::function<void(const Progress&)>& progress);
+
+  /// Puts the histories under their names and adds to the report.
+  void commit(RunReport& report);
+
+ private:
+  const Pipeline& pipeline_;
+  const Plan& plan_;
+  FrameSource& source_;
+  bool backward_;  ///< through frames
+  std::vector<std::size_t> wanted_;
+  TraceRun run_;
+  Stopwatch clock_;
+};
+
+}  // namespace grainvdb

@@ -1,0 +1,204 @@
+#include "pipeline/trace_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "grainvdb/error.hpp"
+#include "pipeline/number.hpp"
+#include "pipeline/schedule.hpp"
+#include "pipeline/trace_start.hpp"
+
+namespace grainvdb {
+namespace {
+
+/// The same field with the other sign, for tracers that go back in time.
+SparseField negated(const SparseField& field, const Lattice& lattice) {
+  SparseField result(field.meta(), field.topology(), lattice);
+  for_each_leaf(*field.topology(), [&](std::size_t leaf) {
+    for (int k = 0; k < field.components(); ++k)
+      std::transform(field.leaf(leaf, k), field.leaf(leaf, k) + leaf_size, result.leaf(leaf, k), std::negate<>());
+  });
+  return result;
+}
+
+/// The frame nearest to the output time at which tracers start.
+std::size_t first_frame(const Pipeline& pipeline, std::span<const std::size_t> wanted) {
+  const TraceSpec& spec = *pipeline.trace;
+  if (spec.through == TraceSpec::Through::mean) return wanted.front();
+  const auto windows = windows_of(pipeline, wanted);
+  const auto& frames = spec.direction == TraceSpec::Direction::backward ? windows.back() : windows.front();
+  return frames[(frames.size() - 1) / 2];
+}
+
+double largest(double so_far, const std::vector<double>& values) {
+  for (const double v : values)
+    if (v > so_far) so_far = v;  // not so for NaN
+  return so_far;
+}
+
+}  // namespace
+
+TraceRun::TraceRun(const Pipeline& pipeline, FrameSource& source, const Lattice& lattice,
+                   std::span<const std::size_t> wanted, const Sinks& sinks)
+    : pipeline_(pipeline),
+      spec_(*pipeline.trace),
+      sinks_(sinks),
+      lattice_(lattice),
+      length_unit_(source.units().length),
+      time_unit_(source.frames().front().time ? source.units().time : "step"),
+      unit_system_(source.units().name),
+      box_(trace_box(source, wanted)),
+      seeds_(make_seeds(pipeline, source, box_, first_frame(pipeline, wanted))),
+      first_time_(time_of(source.frames()[wanted.front()])),
+      last_time_(time_of(source.frames()[wanted.back()])),
+      outputs_(windows_of(pipeline, wanted).size()) {
+  report_.through_frames = spec_.through == TraceSpec::Through::frames;
+  report_.tracers = seeds_.size();
+}
+
+TraceRun::~TraceRun() = default;
+
+void TraceRun::take(const OutputFields& output) {
+  if (report_.through_frames) {
+    take_frame(output);
+  } else {
+    take_mean(output);
+  }
+  ++taken_;
+}
+
+void TraceRun::take_mean(const OutputFields& output) {
+  const Flow flow(flow_grid(output));
+  tracers_.emplace(seeds_, box_, flow, 0.0, settings());
+  start(output);
+  const double duration = spec_.duration.value_or(last_time_ - first_time_);
+  const double dt = spec_.dt.value_or(duration / static_cast<double>(spec_.steps.value_or(1)));
+  const double steps = std::max(1.0, std::ceil(duration / dt * (1 - 1e-9)));
+  if (steps > 1e9)
+    throw ConfigError({pipeline_.location("trace.dt"), "the trace has too many steps", print_number(steps),
+                       "at most 1e9 steps", "Take a longer trace.dt or a shorter trace.duration"});
+  const auto last = static_cast<std::int64_t>(steps);
+  for (std::int64_t step = 0; step < last;) {
+    step = std::min(step + spec_.every, last);
+    move(flow, step == last ? duration : static_cast<double>(step) * dt);
+    record(output, step);
+  }
+}
+
+void TraceRun::take_frame(const OutputFields& output) {
+  // Backwards, tracers see the time run from the latest frame on.
+  const double time = backward() ? last_time_ - output.time.time : output.time.time;
+  // Where frames were left out there may be nothing, or nothing new: tracers go on to the next output time.
+  if (output.time.frame_count == 0 || (previous_ && !(time > previous_time_))) return;
+  std::shared_ptr<const FlowGrid> now = flow_grid(output);
+  if (!previous_) {
+    tracers_.emplace(seeds_, box_, Flow(now), time, settings());
+    start(output);
+  } else {
+    move(Flow(previous_, previous_time_, now, time), time);
+    const bool is_last = taken_ + 1 == outputs_;
+    if (is_last || taken_ % static_cast<std::size_t>(spec_.every) == 0)
+      record(output, backward() ? static_cast<std::int64_t>(taken_) : output.time.last_step);
+  }
+  previous_ = std::move(now);
+  previous_time_ = time;
+}
+
+std::shared_ptr<const FlowGrid> TraceRun::flow_grid(const OutputFields& output) const {
+  const SparseField& velocity = output.fields.at("velocity");
+  const SparseField* const shear_rate = spec_.strain ? &output.fields.at("shear_rate") : nullptr;
+  if (!backward()) return std::make_shared<FlowGrid>(lattice_, velocity, shear_rate, spec_.interpolation);
+  return std::make_shared<FlowGrid>(lattice_, negated(velocity, lattice_), shear_rate, spec_.interpolation);
+}
+
+TracerSettings TraceRun::settings() const {
+  TracerSettings settings;
+  settings.on_undefined = spec_.on_undefined;
+  settings.step_numbers = true;
+  if (spec_.scheme == TraceSpec::Scheme::adaptive) {
+    AdaptiveSteps adaptive{*spec_.tolerance};
+    if (spec_.dt) adaptive.longest = *spec_.dt;
+    settings.stepping = adaptive;
+    return settings;
+  }
+  const double duration = spec_.duration.value_or(last_time_ - first_time_);  // through frames: one step between two
+  settings.stepping = FixedSteps{spec_.dt.value_or(duration / static_cast<double>(spec_.steps.value_or(1)))};
+  return settings;
+}
+
+void TraceRun::start(const OutputFields& output) {
+  const auto& stops = tracers_->state().stop;
+  if (std::none_of(stops.begin(), stops.end(), [](TracerStop s) { return s == TracerStop::moving; }))
+    throw ConfigError({pipeline_.location("trace.seeds"), "no seed of a tracer lies in the material",
+                       std::to_string(stops.size()) + " seeds", "places that the kernel reaches from a particle",
+                       "'grainvdb info' shows where the particles are"});
+  RecordedColumns columns;
+  for (const SparseField* field : recorded(output)) columns.fields.push_back(field->meta());
+  columns.strain = spec_.strain;
+  columns.step_numbers = true;
+  recorder_.emplace(*tracers_, lattice_, columns, spec_.interpolation);
+  for (const auto& sink : sinks_) sink->begin(layout(output));
+  record(output, report_.through_frames && !backward() ? output.time.last_step : 0);
+}
+
+void TraceRun::move(const Flow& flow, double until) {
+  const TracerState& state = tracers_->state();
+  report_.moves += static_cast<std::size_t>(std::count(state.stop.begin(), state.stop.end(), TracerStop::moving));
+  const AdvanceReport done = tracers_->advance(flow, until);
+  report_.steps += done.steps;
+  report_.above_courant_limit += done.above_courant_limit;
+  report_.above_gradient_limit += done.above_gradient_limit;
+  report_.largest_courant = largest(report_.largest_courant, state.courant);
+  report_.largest_gradient_number = largest(report_.largest_gradient_number, state.gradient_number);
+}
+
+void TraceRun::record(const OutputFields& output, std::int64_t step) {
+  const TracerSample& sample = recorder_->record(*tracers_, recorded(output), &output.mask, step);
+  for (const auto& sink : sinks_) sink->write(sample);
+  ++report_.samples;
+}
+
+std::vector<const SparseField*> TraceRun::recorded(const OutputFields& output) const {
+  std::vector<const SparseField*> fields;
+  for (const std::string& name : spec_.record) fields.push_back(&output.fields.at(name));
+  return fields;
+}
+
+TracerLayout TraceRun::layout(const OutputFields& output) const {
+  TracerLayout layout;
+  layout.id = seeds_.id;
+  layout.box = box_;
+  for (const SparseField* field : recorded(output)) layout.fields.push_back(field->meta());
+  layout.length_unit = length_unit_;
+  layout.time_unit = time_unit_;
+  layout.unit_system = unit_system_;
+  if (report_.through_frames && !backward()) {
+    layout.time_meaning = "time of the simulation";
+  } else {
+    layout.time_meaning = std::string("time ") + (backward() ? "back " : "") + "from the start" +
+                          (report_.through_frames ? ", at " + print_number(last_time_) : " through the time mean");
+  }
+  return layout;
+}
+
+void TraceRun::commit(Provenance provenance) {
+  if (report_.through_frames && report_.samples < 2)
+    throw InputError({{pipeline_.file, 0},
+                      "tracers need two output times, and bad frames have left one",
+                      {},
+                      "two frames that can be used",
+                      {}});
+  report_.undefined = recorder_->undefined();
+  for (const TracerStop stop : tracers_->state().stop) ++report_.ended[stop];
+  std::string text;
+  for (const std::string& line : describe(report_)) text += line + '\n';
+  provenance.emplace_back("trace", text);
+  for (const auto& sink : sinks_) {
+    sink->commit(provenance);
+    for (const std::string& file : sink->files()) report_.files.push_back(file);
+  }
+}
+
+}  // namespace grainvdb
