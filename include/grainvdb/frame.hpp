@@ -20,6 +20,7 @@ enum class Column : unsigned {
   mass = 1u << 3,
   type = 1u << 4,
   contacts = 1u << 5,  ///< the contact file of the frame: ids, force on the first id, contact point where given
+  force = 1u << 6,
 };
 
 /// A set of columns.
@@ -58,6 +59,7 @@ struct Particles {
   std::vector<double> radius;  ///< > 0 [length]
   std::vector<double> mass;    ///< > 0 [mass]
   std::vector<int> type;
+  Columns3 force;  ///< total force [force]
 
   std::size_t size() const { return id.size(); }
 };

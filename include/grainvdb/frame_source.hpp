@@ -11,6 +11,7 @@
 
 #include "grainvdb/error.hpp"
 #include "grainvdb/frame.hpp"
+#include "grainvdb/half_step.hpp"
 #include "grainvdb/units.hpp"
 
 namespace grainvdb {
@@ -23,6 +24,7 @@ struct ContactSpec {
   std::vector<std::string> compute;
   /// Or a map from id1, id2, force, normal_force, tangential_force, point to column names (one or three each).
   std::map<std::string, std::vector<std::string>> columns;
+  std::optional<HalfStep> half_step;  ///< makes of the dumped forces those of the run; nothing leaves them
 };
 
 /// What becomes of a frame that is malformed or lacks what is needed of it.

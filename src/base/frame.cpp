@@ -10,7 +10,8 @@ std::vector<std::string> column_names(ColumnSet columns) {
   static constexpr std::pair<Column, const char*> names[] = {
       {Column::velocity, "velocity"}, {Column::angular_velocity, "angular velocity"},
       {Column::radius, "radius"},     {Column::mass, "mass"},
-      {Column::type, "type"},         {Column::contacts, "contacts"}};
+      {Column::type, "type"},         {Column::contacts, "contacts"},
+      {Column::force, "force"}};
   std::vector<std::string> result{"id", "position"};
   for (const auto& [column, name] : names)
     if (columns.has(column)) result.emplace_back(name);

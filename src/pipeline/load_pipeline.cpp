@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "grainvdb/pipeline.hpp"
+#include "pipeline/half_step_keys.hpp"
 #include "pipeline/load_config.hpp"
 #include "pipeline/resolved.hpp"
 #include "pipeline/schema.hpp"
@@ -44,6 +45,7 @@ void check_together(const Pipeline& p) {
                        {},
                        "either force (the total), or both normal_force and tangential_force",
                        {}});
+  check_half_step(p);
   if (p.window_step > 0 && p.window == 0)
     throw ConfigError({p.location("average.step"), "average.step has no meaning for one mean of all frames",
                        "average.step " + std::to_string(p.window_step) + " at average.window all",
@@ -92,6 +94,8 @@ Pipeline load_pipeline(const std::string& file, const std::vector<std::string>& 
   pipeline.where = config.places;
   for (const auto& [key, place] : pipeline.where)
     if (key.starts_with("input.")) pipeline.input.where.emplace(key, place);
+  if (auto& half_step = pipeline.input.contacts.half_step; half_step && half_step->dt == 0)
+    half_step->dt = pipeline.input.dt.value_or(0);
   check_together(pipeline);
   pipeline.resolved = resolved_yaml(schema, config.values);
   return pipeline;

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "bin/half_step.hpp"
+
 namespace grainvdb {
 namespace {
 
@@ -31,6 +33,9 @@ void apply_selection(const Selection& selection, const Box& box, Particles& part
 
 Material make_material(Frame frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted) {
   Material material;
+  if (const auto& half_step = pipeline.input.contacts.half_step; half_step && frame.contacts.size() > 0)
+    correct_half_step(*half_step, frame);
+  frame.particles.force = {};
   material.branches = make_branch_sets(frame, pipeline, wanted);
   material.file = std::move(frame.file);
   material.step = frame.step;

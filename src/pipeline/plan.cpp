@@ -9,6 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "bin/half_step.hpp"
 #include "pipeline/number.hpp"
 #include "pipeline/text.hpp"
 
@@ -284,6 +285,9 @@ Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
   for (Sweep& sweep : plan.sweeps)
     if (!pipeline.select.types.empty() || (tells_walls(sweep.branch_kinds) && !pipeline.walls.types.empty()))
       sweep.columns |= Column::type;
+  if (const auto& half_step = pipeline.input.contacts.half_step)
+    for (Sweep& sweep : plan.sweeps)
+      if (sweep.columns.has(Column::contacts)) sweep.columns |= half_step_columns(*half_step);
   for (const auto& entry : moments.entries())
     if (kept.contains(entry.moment->name)) plan.means.push_back(entry.moment);
   plan_errors(plan, stages);

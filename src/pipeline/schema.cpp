@@ -10,6 +10,7 @@
 #include "grainvdb/field_sink.hpp"
 #include "grainvdb/units.hpp"
 #include "pipeline/average_keys.hpp"
+#include "pipeline/half_step_keys.hpp"
 #include "pipeline/frame_range.hpp"
 #include "pipeline/key_builders.hpp"
 #include "pipeline/text.hpp"
@@ -359,6 +360,7 @@ Schema make_schema(const StageRegistry& registry) {
   schema.keys.push_back(version);
   add_input(schema);
   add_contacts(schema);
+  add_half_step_keys(schema);
   add_selection(schema);
   add_walls(schema);
   add_method(schema);

@@ -152,6 +152,7 @@ ParticleLayout particle_layout(const FrameHeader& header, const std::string& fil
     find_vector(finder, {"omegax", "omegay", "omegaz"}, layout.angular_velocity, missing);
   if (wanted.has(Column::radius)) find_radius(finder, spec, layout, missing);
   if (wanted.has(Column::mass)) find_mass(finder, spec, layout, missing);
+  if (wanted.has(Column::force)) find_vector(finder, {"fx", "fy", "fz"}, layout.force, missing);
   if (wanted.has(Column::type)) {
     if (finder.has("type"))
       layout.type = finder.whole("type");
@@ -186,6 +187,7 @@ Particles make_particles(const ParticleLayout& layout, Table table, const FrameH
       for (double& x : particles.position[a]) x = header.box.lo[a] + x * (header.box.hi[a] - header.box.lo[a]);
   if (layout.velocity) take3(*layout.velocity, particles.velocity);
   if (layout.angular_velocity) take3(*layout.angular_velocity, particles.angular_velocity);
+  if (layout.force) take3(*layout.force, particles.force);
 
   std::vector<double> radius;
   if (layout.radius) {

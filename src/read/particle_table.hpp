@@ -20,6 +20,7 @@ struct ParticleLayout {
   bool scaled = false;  ///< positions are fractions of the box: x = lo + xs (hi - lo)
   std::optional<std::array<std::size_t, 3>> velocity;
   std::optional<std::array<std::size_t, 3>> angular_velocity;
+  std::optional<std::array<std::size_t, 3>> force;
   std::optional<std::size_t> radius;
   double radius_factor = 1;  ///< ½ for a column of diameters
   double common_radius = 0;  ///< where the dump has no radii [length]
