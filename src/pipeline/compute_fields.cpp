@@ -198,7 +198,7 @@ bool Stream::is_usable(const Visit& visit, const MaybeReady& frame) {
 void Stream::note_size(const FrameContext& frame) {
   material_ += frame.particles().size();
   size_.particles = std::max(size_.particles, static_cast<double>(frame.particles().size()));
-  size_.contacts = std::max(size_.contacts, 0.5 * static_cast<double>(frame.branches().size()));
+  size_.contacts = std::max(size_.contacts, static_cast<double>(frame.contact_count()));
 }
 
 void Stream::show_progress(const Visit& visit) {

@@ -26,6 +26,12 @@ FrameContext::FrameContext(std::shared_ptr<const Material> material, const Splat
   if (setting_.wanted.empty()) check_spread(*material_, setting_.lattice, setting_.pipeline);
 }
 
+std::size_t FrameContext::contact_count() const {
+  std::size_t most = 0;
+  for (const auto& [kind, branches] : material_->branches) most = std::max(most, branches.size() / 2);
+  return most;
+}
+
 void FrameContext::prepare(std::size_t bytes_per_leaf) {
   for (const SplatGroup& group : groups_.passes.at(0).groups) {
     if (group.of_frame_alone()) {

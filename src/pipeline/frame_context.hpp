@@ -52,6 +52,8 @@ class FrameContext : public FrameView {
 
   const Particles& particles() const override { return material_->particles; }
   const HalfBranches& branches(BranchKind set) const override { return material_->branches.at(set); }
+  /// Of the largest set of half branches.
+  std::size_t contact_count() const;
   std::vector<Vec3> interpolate_frame(const Moment& numerator, const Moment& denominator) const override;
   std::vector<Vec3> interpolate_mean(const Moment& numerator, const Moment& denominator) const override;
   std::vector<double> deviation_factors(const Moment& denominator) const override;

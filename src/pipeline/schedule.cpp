@@ -92,7 +92,8 @@ std::vector<std::size_t> frames_of(const WindowSchedule& schedule, std::span<con
 
 std::vector<std::vector<std::size_t>> windows_of(const Pipeline& pipeline, std::span<const std::size_t> wanted) {
   std::vector<std::vector<std::size_t>> windows;
-  for (const Window& window : schedule_windows(time_windows(pipeline), wanted.size()).windows) {
+  const Plan whole_windows;  // without blocks
+  for (const Window& window : schedule_windows(time_windows(pipeline, whole_windows), wanted.size()).windows) {
     const auto frames = wanted.subspan(window.frames.first, window.frames.count);
     windows.emplace_back(frames.begin(), frames.end());
   }
