@@ -47,7 +47,7 @@ TraceRun::TraceRun(const Pipeline& pipeline, FrameSource& source, const Lattice&
       sinks_(sinks),
       lattice_(lattice),
       length_unit_(source.units().length),
-      time_unit_(source.frames().front().time ? source.units().time : "step"),
+      time_unit_(source.units().time),
       unit_system_(source.units().name),
       box_(trace_box(source, wanted)),
       seeds_(make_seeds(pipeline, source, box_, first_frame(pipeline, wanted))),
