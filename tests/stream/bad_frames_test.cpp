@@ -1,4 +1,6 @@
 // Frames that cannot be used are left out of every sum, and never silently.
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -81,6 +83,35 @@ TEST_F(SkippedFrames, AreInNoSumOfAnySweep) {
   EXPECT_EQ(result.report.bad_frames[0].step, 20);
   EXPECT_EQ(result.report.bad_frames[1].step, 60);
   EXPECT_THAT(result.report.bad_frames[0].reason, HasSubstr("frame2:7: a bad row"));
+}
+
+// A block that loses all its frames does not count; seven frames in five blocks are 1, 1, 2, 1, 2.
+TEST_F(SkippedFrames, AreInNoBlockOfAStandardError) {
+  Pipeline p = skipping({"phi", "phi_error", "velocity_error", "mask"});
+  p.blocks = 5;
+  FaultySource faulty(frames_, {{10, {}}, {30, {}}});
+  const Result result = run(p, faulty);
+  // What is left is in four blocks of 1, 1, 1 and 2.
+  MemorySource good(without(frames_, {10, 30}));
+  p.blocks = 4;
+  const Result expected = run(p, good);
+  expect_same_fields(result.record, expected.record);
+  const FieldCopy& error = result.only().field("phi_error");
+  EXPECT_GT(std::count_if(error.values.begin(), error.values.end(), [](float e) { return e > 0; }), 1000);
+}
+
+// With a single block left there is no error, and the mask says so.
+TEST_F(SkippedFrames, LeaveNoStandardErrorWhereOneBlockIsLeft) {
+  Pipeline p = skipping({"phi_error"});
+  p.blocks = 2;
+  FaultySource faulty(frames_, {{0, {}}, {10, {}}, {20, {}}});
+  const Result result = run(p, faulty);
+  const Written& written = result.only();
+  EXPECT_GT(written.field("phi_error").topology->active_voxel_count(), 0U);
+  written.field("phi_error").for_each_active([&](const Coord& at) {
+    EXPECT_TRUE(std::isnan(written.field("phi_error").at(at)));
+    EXPECT_TRUE(written.mask_at(at) & static_cast<std::uint32_t>(Reason::few_blocks));
+  });
 }
 
 TEST_F(SkippedFrames, StandInTheProvenance) {
