@@ -43,6 +43,14 @@ struct Limits {
   double volume_error = 0.05;                 ///< relative, of a grain's volume in the fields (grain_volume_error)
 };
 
+/// A standard error at which averaging ends.
+struct Until {
+  std::string field;      ///< whose error it is
+  double error = 0;       ///< [unit of the field, or a part of its magnitude]
+  bool relative = false;  ///< the latter
+  double quantile = 0;    ///< the share of voxels in which the error must be no larger
+};
+
 struct Pipeline {
   std::string file;  ///< where it was read from
   InputSpec input;
@@ -56,6 +64,7 @@ struct Pipeline {
   std::size_t window = 0;                       ///< frames per time average; 0: all frames in one
   std::size_t window_step = 0;       ///< frames from the beginning of one average to that of the next; 0: as window
   std::size_t blocks = 10;           ///< of frames, from whose differences standard errors are estimated
+  std::optional<Until> until;        ///< ends the average before the last frame
   std::vector<std::string> fields;   ///< what to write, in this order
   StageSettings stages;              ///< option values of every stage, defaults filled in
   std::vector<std::string> formats;  ///< of the output: hdf5, vdb

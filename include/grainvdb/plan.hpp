@@ -29,13 +29,20 @@ struct Halo {
 /// What is enough for both.
 Halo merged(const Halo& a, const Halo& b);
 
+/// Standard errors, and the stages that are run again for them without each block of frames, in order.
+struct ErrorPlan {
+  std::vector<const Stage*> errors;
+  std::vector<const Stage*> by_block;
+};
+
 struct Plan {
   std::vector<const Stage*> stages;     ///< in an order in which each finds its needs
   std::vector<Sweep> sweeps;            ///< one, or two where a moment needs a time mean
   std::vector<MomentPtr> means;         ///< the moments whose time means are kept
   std::map<std::string, Halo> halos;    ///< of every moment, by name
-  std::vector<const Stage*> by_block;   ///< stages that standard errors derive again without each block of frames
-  std::vector<MomentPtr> block_sums;    ///< the moments that these need, which are summed by blocks as well
+  ErrorPlan errors;                     ///< the standard errors that are among the stages
+  ErrorPlan until;                      ///< that of average.until alone
+  std::vector<MomentPtr> block_sums;    ///< the moments that errors need, which are summed by blocks as well
   std::vector<std::string> not_needed;  ///< stages of the registry that this plan does not run
 };
 

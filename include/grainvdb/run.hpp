@@ -21,10 +21,19 @@
 
 namespace grainvdb {
 
+/// How an average with average.until ended.
+struct Stop {
+  std::size_t frames = 0;        ///< that were read for it; bad ones count
+  std::size_t frames_there = 0;  ///< that it could have had
+  bool met = false;              ///< whether the target was met
+  double error = 0;              ///< in the end, as the target is meant
+};
+
 struct Progress {
   std::size_t frames_done = 0;  ///< over all sweeps
   std::size_t frames_total = 0;
-  std::string doing;  ///< e.g. "sweep 1 of 2"
+  std::string doing;    ///< e.g. "sweep 1 of 2"
+  std::string error{};  ///< where averaging may stop by itself: how far it has come, in words
 };
 
 struct RunReport {
@@ -39,6 +48,7 @@ struct RunReport {
   std::vector<std::pair<std::string, double>> seconds;      ///< by step of the run: read, splat, …; steps overlap
   std::vector<std::pair<std::string, std::size_t>> masked;  ///< reason → voxels, of the last output time
   std::vector<BadFrame> bad_frames;                         ///< that were left out
+  std::optional<Stop> stop;                                 ///< where averaging could stop by itself
   std::vector<std::string> averaging;                       ///< what there is to say of the averages, in words
   std::vector<std::string> walls;                           ///< where they are and what is done about them, in words
   std::vector<std::string> files;                           ///< written, those of the tracers apart
@@ -78,6 +88,9 @@ struct OutputFields {
 /// out of every sweep and stands in the report. So that this is known in the first sweep, that one reads the columns of
 /// all. An output time that has no frame left has no voxels and a frame_count of 0; no frame left at all is an
 /// InputError.
+///
+/// Where the pipeline has average.until, frames after that at which the target is met are in no sum, and what is wrong
+/// with them does not matter; a few of them may have been read ahead.
 ///
 /// `take` and `progress` are called by one thread at a time, `progress` after each frame of each sweep; what they throw
 /// ends the run.

@@ -23,6 +23,7 @@ std::set<std::string> load_names(ByteReader& from) {
 }  // namespace
 
 void MomentSums::save(ByteWriter& to) const {
+  to.number(first_sweep_);
   to.number(std::uint64_t{frames_});
   save_names(to, added_);
   save_names(to, complete_);
@@ -37,6 +38,7 @@ void MomentSums::save(ByteWriter& to) const {
 }
 
 void MomentSums::load(ByteReader& from) {
+  first_sweep_ = from.number<bool>();
   frames_ = from.count();
   added_ = load_names(from);
   complete_ = load_names(from);

@@ -19,6 +19,7 @@ std::string duration(double seconds) {
 std::string progress_text(const Progress& progress, double seconds_so_far) {
   std::string text =
       progress.doing + ": " + std::to_string(progress.frames_done) + '/' + std::to_string(progress.frames_total);
+  if (!progress.error.empty()) text += ", " + progress.error;
   if (progress.frames_done == 0 || progress.frames_total == 0) return text;
   const double done = static_cast<double>(progress.frames_done) / static_cast<double>(progress.frames_total);
   return text + " (" + std::to_string(static_cast<int>(100 * done)) + " %), " +

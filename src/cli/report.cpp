@@ -67,6 +67,8 @@ std::string warnings(const RunReport& report) {
   if (n > shown)
     text += "grainvdb: warning: left out " + counted(n - shown, "more bad frame") +
             ", which the result lists in /provenance/bad_frames\n";
+  if (report.stop && !report.stop->met)
+    text += "grainvdb: warning: average.until was not met after all " + counted(report.stop->frames, "frame") + '\n';
   if (report.trace && !report.trace->is_meaningful())
     text += "grainvdb: warning: " + trace_warning(*report.trace) + '\n';
   return text;

@@ -4,8 +4,48 @@
 #include <string>
 
 namespace grainvdb {
+namespace {
 
-void add_average_keys(Schema& schema) {
+Until& until_of(Pipeline& p) {
+  return p.until ? *p.until : p.until.emplace();
+}
+
+void add_until_keys(Schema& schema, const StageRegistry& registry) {
+  schema.sections.push_back({"average.until",
+                             "Ends the average, of all frames, once a standard error is small enough; give error or "
+                             "relative."});
+  KeyInfo field{"average.until", "field", ValueType::text, "The field whose standard error it is."};
+  field.required = true;
+  for (const Stage& stage : registry.stages())
+    if (!stage.error_of.empty()) field.choices.push_back(stage.error_of);
+  field.apply = [](Pipeline& p, const ConfigValue& v) { until_of(p).field = std::get<std::string>(v); };
+  schema.keys.push_back(field);
+  const auto add_target = [&](const char* name, const char* help, const char* unit, bool relative) {
+    KeyInfo target{"average.until", name, ValueType::number, help, unit};
+    target.minimum = 0;
+    target.above_minimum = true;
+    target.apply = [relative](Pipeline& p, const ConfigValue& v) {
+      until_of(p).error = std::get<double>(v);
+      until_of(p).relative = relative;
+    };
+    schema.keys.push_back(target);
+  };
+  add_target("error", "The standard error that is small enough; vectors and tensors count by their magnitude.",
+             "unit of the field", false);
+  add_target("relative", "The same as a part of the magnitude of the field.", "", true);
+  KeyInfo quantile{"average.until", "quantile", ValueType::number,
+                   "The share of voxels, among those where the field has a value, in which it must be."};
+  quantile.required = true;
+  quantile.minimum = 0;
+  quantile.above_minimum = true;
+  quantile.maximum = 1;
+  quantile.apply = [](Pipeline& p, const ConfigValue& v) { until_of(p).quantile = std::get<double>(v); };
+  schema.keys.push_back(quantile);
+}
+
+}  // namespace
+
+void add_average_keys(Schema& schema, const StageRegistry& registry) {
   schema.sections.push_back({"average", "Averages over time."});
   KeyInfo window{"average", "window", ValueType::window,
                  "Frames per output time; 'all' makes one mean of all frames, 'none' an output time of each frame. The "
@@ -36,6 +76,7 @@ void add_average_keys(Schema& schema) {
     p.blocks = static_cast<std::size_t>(std::get<std::int64_t>(v));
   };
   schema.keys.push_back(blocks);
+  add_until_keys(schema, registry);
 }
 
 }  // namespace grainvdb

@@ -4,6 +4,6 @@
 
 namespace grainvdb {
 
-void add_average_keys(Schema& schema);
+void add_average_keys(Schema& schema, const StageRegistry& registry);
 
 }  // namespace grainvdb

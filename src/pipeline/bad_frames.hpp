@@ -22,13 +22,12 @@ struct OrFault {
   std::exception_ptr fault;
 };
 
-/// f(), or what is wrong with the frame where bad frames are to be skipped; otherwise that is thrown.
+/// f(), or what it threw.
 template <class F>
-OrFault<std::invoke_result_t<F&>> attempt(OnError on_error, F f) {
-  if (on_error == OnError::error) return {f(), nullptr};
+OrFault<std::invoke_result_t<F&>> attempt(F f) {
   try {
     return {f(), nullptr};
-  } catch (const InputError&) {
+  } catch (...) {
     return {std::nullopt, std::current_exception()};
   }
 }
@@ -37,6 +36,7 @@ class BadFrames {
  public:
   bool contains(std::size_t frame) const { return reasons_.contains(frame); }
   std::size_t count() const { return reasons_.size(); }
+  /// Throws the fault where it is none of the frame, but no InputError.
   void add(std::size_t frame, const std::exception_ptr& fault);
   /// First what the index of the source leaves out.
   std::vector<BadFrame> list(const FrameSource& source) const;

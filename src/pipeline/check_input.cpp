@@ -90,10 +90,10 @@ void require_columns(const Pipeline& pipeline, const Plan& plan, FrameSource& so
 
 /// The last output time may be shorter, but where it is the only one.
 void require_blocks(const Pipeline& pipeline, const Plan& plan, std::size_t frames) {
-  if (plan.by_block.empty()) return;
+  if (plan.errors.errors.empty()) return;
   const WindowSchedule schedule = schedule_windows(time_windows(pipeline, plan), frames);
   const Window& first = schedule.windows.front();
-  if (first.blocks.size() >= pipeline.blocks) return;
+  if ((pipeline.until ? frames : first.blocks.size()) >= pipeline.blocks) return;
   throw ConfigError({pipeline.location("average.blocks"),
                      "the output times have too few frames for the standard errors that are wanted",
                      std::to_string(first.frames.count) + (first.frames.count == 1 ? " frame" : " frames"),

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <atomic>
 #include <exception>
 #include <iterator>
 #include <memory>
@@ -20,6 +21,7 @@
 #include "pipeline/schedule.hpp"
 #include "pipeline/stopwatch.hpp"
 #include "pipeline/stream.hpp"
+#include "pipeline/until.hpp"
 #include "pipeline/wall_treatment.hpp"
 #include "pipeline/window.hpp"
 #include "pipeline/written_box.hpp"
@@ -74,6 +76,8 @@ class Stream {
         region_(region),
         checkpoint_(checkpoint),
         wanted_(select_frames(pipeline.frames, source.frames().size())),
+        frames_there_(wanted_.size()),
+        end_(wanted_.size()),
         schedule_(schedule_windows(time_windows(pipeline, plan), wanted_.size())),
         averager_(pipeline, plan, schedule_, lattice, region),
         walls_(WallTreatment::make(pipeline, plan, lattice, source, wanted_)) {
@@ -87,6 +91,13 @@ class Stream {
   MaybeReady prepare(const Visit& visit, MaybeFrame frame);
   void finish(const Visit& visit, MaybeReady& frame);
   bool is_usable(const Visit& visit, const MaybeReady& frame);
+  bool is_past_end(const Visit& visit) const { return visit.place >= end_; }
+  bool ends_sweep(const Visit& visit) const { return visit.ends_sweep || visit.place + 1 == end_; }
+  bool ends_window(const Visit& visit) const { return ends_sweep(visit) && visit.sweep + 1 == plan_.sweeps.size(); }
+  void end_where_certain(std::size_t frames);
+  void end_at(std::size_t frames);
+  DeriveSetting derive_setting(const ErrorPlan& errors);
+  void note_stop(const DerivedFields& all);
   void note_size(const FrameContext& frame);
   void show_progress(const Visit& visit);
   OutputTime time_of_window(std::size_t window) const;
@@ -108,6 +119,8 @@ class Stream {
   std::optional<Region> region_;
   Checkpoint* checkpoint_;
   std::vector<std::size_t> wanted_;
+  const std::size_t frames_there_;
+  std::atomic<std::size_t> end_;  // frames in the window, where averaging stops by itself
   WindowSchedule schedule_;
   WindowAverager averager_;
   std::optional<WallTreatment> walls_;
@@ -121,9 +134,9 @@ class Stream {
 };
 
 RunReport Stream::run() {
+  if (checkpoint_ != nullptr) resume();
   const std::vector<Visit> visits = schedule_visits(schedule_, wanted_, plan_.sweeps.size());
   now_.frames_total = visits.size();
-  if (checkpoint_ != nullptr) resume();
   const std::span<const Visit> left = std::span(visits).subspan(now_.frames_done);
 
   // What runs in parallel within a step is isolated: a thread that waits for the rest of it does not begin another
@@ -136,9 +149,10 @@ RunReport Stream::run() {
         return tbb::this_task_arena::isolate([&] { return prepare(left[i], std::move(frame)); });
       },
       [&](std::size_t i, MaybeReady frame) {
+        if (is_past_end(left[i])) return;
         tbb::this_task_arena::isolate([&] { finish(left[i], frame); });
         frame = {};
-        if (left[i].ends_window) end_window(left[i].window);
+        if (ends_window(left[i])) end_window(left[i].window);
         show_progress(left[i]);
         if (checkpoint_ != nullptr && checkpoint_->is_due()) save_progress();
       });
@@ -148,7 +162,11 @@ RunReport Stream::run() {
   report_.channels = channel_count(plan_);
   report_.memory = memory_model(plan_, pipeline_).peak(size_);
   report_.averaging.push_back(describe(schedule_, pipeline_));
-  if (!plan_.by_block.empty()) report_.averaging.push_back(describe_blocks(schedule_));
+  if (report_.stop) {
+    report_.averaging.push_back(describe(*pipeline_.until, *report_.stop));
+  } else if (!plan_.errors.errors.empty()) {
+    report_.averaging.push_back(describe_blocks(schedule_));
+  }
   if (walls_) report_.walls = walls_->describe();
   report_.seconds = clock_.seconds();
   report_.wall_seconds = clock_.passed();
@@ -157,17 +175,17 @@ RunReport Stream::run() {
 }
 
 MaybeFrame Stream::read(const Visit& visit) {
-  const OnError on_error = pipeline_.input.on_error;
+  if (is_past_end(visit)) return {};
   // Whether a frame is bad must be known before it is in any sum.
-  const bool all = on_error == OnError::skip_frame && visit.sweep == 0;
+  const bool all = pipeline_.input.on_error == OnError::skip_frame && visit.sweep == 0;
   const ColumnSet columns = all ? all_columns(plan_) : plan_.sweeps[visit.sweep].columns;
-  return clock_.time("read", [&] { return attempt(on_error, [&] { return source_.read(visit.frame, columns); }); });
+  return clock_.time("read", [&] { return attempt([&] { return source_.read(visit.frame, columns); }); });
 }
 
 MaybeReady Stream::prepare(const Visit& visit, MaybeFrame frame) {
-  if (frame.fault) return {{}, frame.fault};
+  if (!frame.value) return {{}, frame.fault};
   return clock_.time("prepare", [&] {
-    return attempt(pipeline_.input.on_error, [&] {
+    return attempt([&] {
       const std::set<BranchKind>& branches = plan_.sweeps[visit.sweep].branch_kinds;
       Material material = make_material(std::move(*frame.value), pipeline_, branches);
       if (walls_) walls_->apply(material);
@@ -183,16 +201,40 @@ void Stream::finish(const Visit& visit, MaybeReady& frame) {
   } else {
     averager_.leave_out(visit);
   }
-  if (visit.ends_sweep) clock_.time("average", [&] { averager_.end_sweep(visit); });
+  if (pipeline_.until && visit.sweep == 0) end_where_certain(visit.place + 1);
+  if (ends_sweep(visit)) clock_.time("average", [&] { averager_.end_sweep(visit); });
 }
 
 /// A frame that was good in the first sweep has changed when it is bad in another.
 bool Stream::is_usable(const Visit& visit, const MaybeReady& frame) {
   if (bad_.contains(visit.frame)) return false;
   if (!frame.fault) return true;
-  if (visit.sweep > 0) std::rethrow_exception(frame.fault);
+  if (visit.sweep > 0 || pipeline_.input.on_error == OnError::error) std::rethrow_exception(frame.fault);
   bad_.add(visit.frame, frame.fault);
   return false;
+}
+
+void Stream::end_where_certain(std::size_t frames) {
+  if (!is_time_to_look(pipeline_, frames)) return;
+  const double error = clock_.time("errors", [&] {
+    return tbb::this_task_arena::isolate(
+        [&] { return error_so_far(derive_setting(plan_.until), averager_.sums(), region_); });
+  });
+  now_.error = describe_progress(*pipeline_.until, error);
+  if (error <= pipeline_.until->error) end_at(frames);
+}
+
+/// Frames behind are in no sum of any sweep; there is one window.
+void Stream::end_at(std::size_t frames) {
+  end_ = frames;
+  wanted_.resize(frames);
+  schedule_.windows.front().frames.count = frames;
+  schedule_.parts.front().count = frames;
+  now_.frames_total = plan_.sweeps.size() * frames;
+}
+
+DeriveSetting Stream::derive_setting(const ErrorPlan& errors) {
+  return {pipeline_, errors, lattice_, source_.units(), walls_ ? &*walls_ : nullptr};
 }
 
 void Stream::note_size(const FrameContext& frame) {
@@ -252,12 +294,19 @@ DerivedFields Stream::derive() {
   if (walls_) inside.emplace(walls_->renormalise(averager_.means(), plan_.means));
   DerivedFields all = derive_fields(pipeline_, plan_.stages, kept, lattice_, source_.units(),
                                     inside ? inside->means : averager_.means());
-  derive_errors({pipeline_, plan_, lattice_, source_.units(), walls_ ? &*walls_ : nullptr}, averager_.sums(),
-                averager_.means(), all);
-  std::erase_if(all.fields, [&](const auto& entry) { return !wanted.contains(entry.first); });
+  derive_errors(derive_setting(plan_.errors), averager_.sums(), averager_.means(), all);
   if (walls_) walls_->mask(all);
+  if (pipeline_.until) note_stop(all);
+  std::erase_if(all.fields, [&](const auto& entry) { return !wanted.contains(entry.first); });
   if (region_) return clip_fields(all, *region_, lattice_);
   return all;
+}
+
+void Stream::note_stop(const DerivedFields& all) {
+  const Until& until = *pipeline_.until;
+  const double error =
+      error_of_share(until, all.fields.at(until.field), all.fields.at(until.field + "_error"), region_);
+  report_.stop.emplace(Stop{wanted_.size(), frames_there_, end_ < frames_there_ || error <= until.error, error});
 }
 
 void Stream::end_window(std::size_t window) {
@@ -292,11 +341,14 @@ void Stream::save_progress() {
 void Stream::save(ByteWriter& to) const {
   to.number(std::uint64_t{now_.frames_done});
   to.number(std::uint64_t{outputs_});
+  to.number(std::uint64_t{end_});
   averager_.save(to);
   bad_.save(to);
   to.number(size_);
   for (const std::size_t n : {material_, report_.active_voxels, report_.summed_leaves, report_.grids})
     to.number(std::uint64_t{n});
+  to.number(report_.stop.has_value());
+  if (report_.stop) to.number(*report_.stop);
   to.number(std::uint64_t{report_.masked.size()});
   for (const auto& [reason, voxels] : report_.masked) {
     to.text(reason);
@@ -307,10 +359,12 @@ void Stream::save(ByteWriter& to) const {
 void Stream::load(ByteReader& from) {
   now_.frames_done = from.count();
   outputs_ = from.count();
+  if (const std::size_t end = from.count(); end < frames_there_) end_at(end);
   averager_.load(from);
   bad_.load(from);
   size_ = from.number<RunSize>();
   for (std::size_t* n : {&material_, &report_.active_voxels, &report_.summed_leaves, &report_.grids}) *n = from.count();
+  if (from.number<bool>()) report_.stop = from.number<Stop>();
   for (std::size_t left = from.count(); left > 0; --left) {
     std::string reason = from.text();
     report_.masked.emplace_back(std::move(reason), from.count());

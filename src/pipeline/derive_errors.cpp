@@ -15,18 +15,11 @@
 namespace grainvdb {
 namespace {
 
-std::vector<const Stage*> error_stages(const Plan& plan) {
-  std::vector<const Stage*> stages;
-  for (const Stage* stage : plan.stages)
-    if (!stage->error_of.empty()) stages.push_back(stage);
-  return stages;
-}
-
 /// The moments from which a field is made, through others or itself.
 std::vector<MomentPtr> moments_behind(const std::string& field, const DeriveSetting& setting) {
   std::set<std::string> behind{field};
   std::vector<MomentPtr> moments;
-  const auto& stages = setting.plan.by_block;
+  const auto& stages = setting.errors.by_block;
   for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {
     if (!behind.contains((*stage)->name)) continue;
     const StageNeeds needs = (*stage)->needs(setting.pipeline.stages);
@@ -70,7 +63,7 @@ SparseField write(const Estimate& estimate, const DeriveSetting& setting, const 
 }  // namespace
 
 void derive_errors(const DeriveSetting& setting, const WindowSums& sums, const MomentMeans& means, DerivedFields& all) {
-  const std::vector<const Stage*> stages = error_stages(setting.plan);
+  const std::vector<const Stage*>& stages = setting.errors.errors;
   if (stages.empty()) return;
   LeaveOneOut others(sums, means);
   const std::vector<std::size_t> blocks = blocks_with_frames(others);
@@ -88,8 +81,8 @@ void derive_errors(const DeriveSetting& setting, const WindowSums& sums, const M
   for (std::size_t j = 0; enough_blocks && j < blocks.size(); ++j) {
     const MomentMeans rest = others.without(blocks[j]);
     std::optional<WallTreatment::Renormalised> inside;
-    if (setting.walls != nullptr) inside.emplace(setting.walls->renormalise(rest, setting.plan.block_sums));
-    const DerivedFields without = derive_fields(setting.pipeline, setting.plan.by_block, fields, setting.lattice,
+    if (setting.walls != nullptr) inside.emplace(setting.walls->renormalise(rest, sums.blocked()));
+    const DerivedFields without = derive_fields(setting.pipeline, setting.errors.by_block, fields, setting.lattice,
                                                 setting.units, inside ? inside->means : rest);
     all.grids += without.grids;
     for (Estimate& e : estimates) e.jackknife.leave_out(j, without.fields.at(e.stage->error_of));
@@ -102,7 +95,7 @@ void derive_errors(const DeriveSetting& setting, const WindowSums& sums, const M
 
 std::size_t error_bytes_per_leaf(const Plan& plan) {
   std::size_t components = 0;
-  for (const Stage* stage : error_stages(plan)) components += static_cast<std::size_t>(stage->components);
+  for (const Stage* stage : plan.errors.errors) components += static_cast<std::size_t>(stage->components);
   return LeaveOneOut::bytes_per_leaf(plan.block_sums) + components * Jackknife::bytes_per_leaf();
 }
 

@@ -16,15 +16,15 @@ namespace grainvdb {
 /// What fields are derived with, apart from the sums.
 struct DeriveSetting {
   const Pipeline& pipeline;
-  const Plan& plan;
+  const ErrorPlan& errors;
   const Lattice& lattice;
   const UnitSystem& units;
   WallTreatment* walls;  ///< nullptr: none
 };
 
-/// Adds the standard errors that the plan asks for to `all`, which holds the fields that they are of, derived from
-/// `means` as the walls leave them. An error is undefined where its field is and, with Reason::few_blocks, where the field is without one of
-/// the blocks or only one of them reaches the voxel. Blocks without a frame do not count.
+/// Adds the standard errors of the setting to `all`, which holds the fields that they are of, derived from
+/// `means` as the walls leave them. An error is undefined where its field is and, with Reason::few_blocks, where the
+/// field is without one of the blocks or only one of them reaches the voxel. Blocks without a frame do not count.
 void derive_errors(const DeriveSetting& setting, const WindowSums& sums, const MomentMeans& means, DerivedFields& all);
 
 /// Bytes that a leaf takes while it works, apart from the sums.

@@ -157,9 +157,10 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
             (is_written(pipeline, *stage) ? "" : " (not written)") + '\n';
 
   text += "\ntime means kept: " + joined(names_of(plan.means), "none") + '\n';
-  if (!plan.by_block.empty())
-    text += "standard errors: from sums over " + counted(pipeline.blocks, "block") + " of frames; derived again " +
-            "without each: " + joined(names_of(plan.by_block), "none") + '\n';
+  if (!plan.errors.by_block.empty())
+    text += "standard errors: from sums over " + (pipeline.until ? "up to " : std::string()) +
+            counted(pipeline.until ? 2 * pipeline.blocks : pipeline.blocks, "block") + " of frames; derived again " +
+            "without each: " + joined(names_of(plan.errors.by_block), "none") + '\n';
   text += "peak memory: " + to_string(memory_model(plan, pipeline)) +
           "\n  for P particles and C contacts a frame with i periodic images each, and V voxels in the leaves that are "
           "summed\n";

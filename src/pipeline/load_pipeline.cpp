@@ -20,6 +20,23 @@ void check_box(const Pipeline& p, const std::string& section, const std::optiona
       throw ConfigError({p.location(section), section + " selects nothing along " + "xyz" [a], {}, "lo < hi", {}});
 }
 
+void check_until(const Pipeline& p) {
+  if (!p.until) return;
+  const bool absolute = p.where.contains("average.until.error"), relative = p.where.contains("average.until.relative");
+  if (absolute == relative)
+    throw ConfigError({p.location("average.until"),
+                       absolute ? "the target of average.until is given twice" : "average.until has no target",
+                       {},
+                       "either average.until.error or average.until.relative",
+                       {}});
+  if (p.window != 0)
+    throw ConfigError({p.location("average.until"),
+                       "only one mean of all frames can stop by itself",
+                       "average.until at average.window " + std::to_string(p.window),
+                       "average.window: all",
+                       {}});
+}
+
 // What no single key can tell.
 void check_together(const Pipeline& p) {
   if (p.fields.empty() && !p.trace)
@@ -51,6 +68,7 @@ void check_together(const Pipeline& p) {
                        "average.step " + std::to_string(p.window_step) + " at average.window all",
                        "average.window: none, or a number of frames",
                        "frames: ::" + std::to_string(p.window_step) + " averages every so many frames"});
+  check_until(p);
   if (const auto& ids = p.select.ids; ids && ids->first > ids->second)
     throw ConfigError({p.location("select.ids"),
                        "select.ids selects nothing",

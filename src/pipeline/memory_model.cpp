@@ -115,7 +115,8 @@ double components_written(const Plan& plan, const Pipeline& pipeline) {
 double sum_bytes(const Plan& plan, const Pipeline& pipeline) {
   const TimeWindows windows = time_windows(pipeline, plan);
   const std::size_t shared = shared_parts(windows) * WindowSums::bytes_per_leaf(plan.means, {}, 0);
-  const std::size_t sums = WindowSums::bytes_per_leaf(plan.means, plan.block_sums, windows.blocks);
+  const std::size_t sums =
+      WindowSums::bytes_per_leaf(plan.means, plan.block_sums, pipeline.until ? 2 * pipeline.blocks : windows.blocks);
   return static_cast<double>(shared + sums + error_bytes_per_leaf(plan)) / leaf_size;
 }
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <locale>
 #include <map>
 #include <numbers>
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "bin/half_step.hpp"
 #include "pipeline/number.hpp"
@@ -219,21 +221,49 @@ std::map<std::string, Halo> find_halos(const std::vector<const Stage*>& stages, 
   return of_moment;
 }
 
-// What standard errors derive again, and from which sums by blocks.
-void plan_errors(Plan& plan, const StageOrder& order) {
+// What standard errors derive again.
+ErrorPlan plan_errors(std::vector<const Stage*> errors, const std::vector<const Stage*>& stages,
+                      const StageOrder& order) {
+  ErrorPlan plan{std::move(errors), {}};
   std::set<std::string> again;
-  for (const Stage* stage : plan.stages)
-    if (!stage->error_of.empty()) again.insert(stage->error_of);
-  std::set<std::string> moments;
-  for (auto stage = plan.stages.rbegin(); stage != plan.stages.rend(); ++stage) {
+  for (const Stage* stage : plan.errors) again.insert(stage->error_of);
+  for (auto stage = stages.rbegin(); stage != stages.rend(); ++stage) {
     if (!again.contains((*stage)->name)) continue;
     plan.by_block.insert(plan.by_block.begin(), *stage);
     const StageNeeds& needs = order.needs((*stage)->name);
     again.insert(needs.fields.begin(), needs.fields.end());
-    for (const MomentPtr& moment : needs.moments) moments.insert(moment->name);
   }
-  for (const MomentPtr& moment : plan.means)
-    if (moments.contains(moment->name)) plan.block_sums.push_back(moment);
+  return plan;
+}
+
+// The mean over time that a later sweep is about is not known while the first one is under way.
+void check_until(const Pipeline& pipeline, const Plan& plan, const StageOrder& stages, const MomentOrder& moments) {
+  for (const Stage* stage : plan.until.by_block)
+    for (const MomentPtr& moment : stages.needs(stage->name).moments)
+      if (moments.of(*moment).sweep > 0)
+        throw ConfigError({pipeline.location("average.until.field"),
+                           "averaging cannot stop by a field that takes a second sweep over the frames",
+                           pipeline.until->field + ", which needs " + quote_text(stage->name),
+                           "a field that is known after one sweep",
+                           "stages.kinetic_stress.reference: time_mean_moments takes one sweep"});
+}
+
+std::vector<const Stage*> error_stages(const std::vector<const Stage*>& stages) {
+  std::vector<const Stage*> errors;
+  std::copy_if(stages.begin(), stages.end(), std::back_inserter(errors),
+               [](const Stage* s) { return !s->error_of.empty(); });
+  return errors;
+}
+
+// The moments behind standard errors, in the order of the means.
+std::vector<MomentPtr> block_sums(const Plan& plan, const StageOrder& order) {
+  std::set<std::string> names;
+  for (const Stage* stage : plan.errors.by_block)
+    for (const MomentPtr& moment : order.needs(stage->name).moments) names.insert(moment->name);
+  std::vector<MomentPtr> sums;
+  std::copy_if(plan.means.begin(), plan.means.end(), std::back_inserter(sums),
+               [&](const MomentPtr& m) { return names.contains(m->name); });
+  return sums;
 }
 
 }  // namespace
@@ -290,7 +320,12 @@ Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
       if (sweep.columns.has(Column::contacts)) sweep.columns |= half_step_columns(*half_step);
   for (const auto& entry : moments.entries())
     if (kept.contains(entry.moment->name)) plan.means.push_back(entry.moment);
-  plan_errors(plan, stages);
+  plan.errors = plan_errors(error_stages(plan.stages), plan.stages, stages);
+  plan.block_sums = block_sums(plan, stages);
+  if (pipeline.until) {
+    plan.until = plan_errors({registry.find(pipeline.until->field + "_error")}, plan.stages, stages);
+    check_until(pipeline, plan, stages, moments);
+  }
   plan.halos = find_halos(plan.stages, stages, moments);
   for (const Stage& stage : registry.stages())
     if (std::find(plan.stages.begin(), plan.stages.end(), &stage) == plan.stages.end())

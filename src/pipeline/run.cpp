@@ -113,9 +113,11 @@ bool Writer::writes_mask() const {
 void Writer::commit(RunReport& report) {
   finish();
   const std::lock_guard lock(turn_);
+  std::vector<std::size_t> frames = frames_of(schedule_, wanted_);
+  if (report.stop) frames.resize(report.stop->frames);
   clock_.time("write", [&] {
     for (const auto& sink : sinks_) {
-      sink->commit(provenance_of(pipeline_, plan_, source_, frames_of(schedule_, wanted_), report));
+      sink->commit(provenance_of(pipeline_, plan_, source_, frames, report));
       for (const std::string& file : sink->files()) report.files.push_back(file);
     }
   });

@@ -14,6 +14,7 @@ class SweepVisits {
   void add(std::size_t window, std::size_t sweep) {
     std::size_t part = schedule_.windows[window].first_part;
     std::size_t block = 0;
+    place_ = 0;
     for (const std::size_t parts : schedule_.windows[window].blocks) {
       for (std::size_t k = 0; k < parts; ++k, ++part)
         if (sweep > 0 || part >= next_part_) add_part({.sweep = sweep, .window = window, .block = block}, part);
@@ -29,6 +30,7 @@ class SweepVisits {
     visit.begins_part = true;
     for (std::size_t f = frames.first; f < frames.end(); ++f) {
       visit.frame = wanted_[f];
+      visit.place = place_++;
       visits_.push_back(visit);
       visit.begins_part = false;
     }
@@ -37,23 +39,22 @@ class SweepVisits {
   const WindowSchedule& schedule_;
   std::span<const std::size_t> wanted_;
   std::vector<Visit>& visits_;
+  std::size_t place_ = 0;
   std::size_t next_part_ = 0;  // that no window before has
 };
 
 }  // namespace
 
 TimeWindows time_windows(const Pipeline& pipeline, const Plan& plan) {
-  return {pipeline.window, pipeline.window_step, plan.by_block.empty() ? 1 : pipeline.blocks};
+  return {pipeline.window, pipeline.window_step, plan.errors.errors.empty() || pipeline.until ? 1 : pipeline.blocks};
 }
 
 std::vector<Visit> schedule_visits(const WindowSchedule& schedule, std::span<const std::size_t> wanted,
                                    std::size_t sweeps) {
   std::vector<Visit> visits;
   SweepVisits add(schedule, wanted, visits);
-  for (std::size_t w = 0; w < schedule.windows.size(); ++w) {
+  for (std::size_t w = 0; w < schedule.windows.size(); ++w)
     for (std::size_t sweep = 0; sweep < sweeps; ++sweep) add.add(w, sweep);
-    visits.back().ends_window = true;
-  }
   return visits;
 }
 

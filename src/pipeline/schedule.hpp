@@ -17,13 +17,14 @@ struct Visit {
   std::size_t frame = 0;  ///< index into the source
   std::size_t sweep = 0;
   std::size_t window = 0;
+  std::size_t place = 0;     ///< among the visits of its sweep over the window
   std::size_t block = 0;     ///< of its window; where windows overlap, a frame of the first sweep has none
   bool begins_part = false;  ///< the first of a part of the schedule
   bool ends_sweep = false;   ///< the last of its sweep over the window
-  bool ends_window = false;  ///< the last of its window
 };
 
-/// What the pipeline says of output times, and of blocks where the plan has standard errors.
+/// What the pipeline says of output times, and of blocks where the plan has standard errors. Where averaging may stop
+/// by itself blocks are no matter of the schedule: they grow.
 TimeWindows time_windows(const Pipeline& pipeline, const Plan& plan);
 
 /// The visits of a schedule for the frames `wanted`.

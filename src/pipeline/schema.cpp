@@ -10,8 +10,8 @@
 #include "grainvdb/field_sink.hpp"
 #include "grainvdb/units.hpp"
 #include "pipeline/average_keys.hpp"
-#include "pipeline/half_step_keys.hpp"
 #include "pipeline/frame_range.hpp"
+#include "pipeline/half_step_keys.hpp"
 #include "pipeline/key_builders.hpp"
 #include "pipeline/text.hpp"
 #include "pipeline/trace_schema.hpp"
@@ -364,7 +364,7 @@ Schema make_schema(const StageRegistry& registry) {
   add_selection(schema);
   add_walls(schema);
   add_method(schema);
-  add_average_keys(schema);
+  add_average_keys(schema, registry);
   add_output(schema, registry);
   add_trace(schema, registry);
   add_stages(schema, registry);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "average/growing_blocks.hpp"
 #include "base/bytes.hpp"
 #include "pipeline/derive_errors.hpp"
 #include "pipeline/saved_fields.hpp"
@@ -16,10 +17,11 @@ const std::vector<MomentPtr> no_blocks;
 
 /// What a leaf takes at most: in the parts that are kept for further windows, in the window and its blocks, and in what
 /// standard errors are computed with.
-std::size_t bytes_per_leaf(const Plan& plan, const WindowSchedule& schedule) {
+std::size_t bytes_per_leaf(const Pipeline& pipeline, const Plan& plan, const WindowSchedule& schedule) {
   const std::size_t parts =
       schedule.overlapping ? schedule.most_parts() * WindowSums::bytes_per_leaf(plan.means, no_blocks, 0) : 0;
-  const std::size_t sums = WindowSums::bytes_per_leaf(plan.means, plan.block_sums, schedule.most_blocks());
+  const std::size_t blocks = pipeline.until ? 2 * pipeline.blocks : schedule.most_blocks();
+  const std::size_t sums = WindowSums::bytes_per_leaf(plan.means, plan.block_sums, blocks);
   return parts + sums + error_bytes_per_leaf(plan);
 }
 
@@ -27,7 +29,10 @@ std::size_t bytes_per_leaf(const Plan& plan, const WindowSchedule& schedule) {
 
 WindowAverager::WindowAverager(const Pipeline& pipeline, const Plan& plan, const WindowSchedule& schedule,
                                const Lattice& lattice, const std::optional<Region>& region)
-    : plan_(plan), schedule_(schedule), setting_(pipeline, lattice), bytes_per_leaf_(bytes_per_leaf(plan, schedule)) {
+    : plan_(plan),
+      schedule_(schedule),
+      setting_(pipeline, lattice),
+      bytes_per_leaf_(bytes_per_leaf(pipeline, plan, schedule)) {
   for (std::size_t sweep = 0; sweep < plan.sweeps.size(); ++sweep) groups_.push_back(group_moments(plan, sweep));
   if (region)
     for (const SweepGroups& groups : groups_) want_leaves(groups, *region);
@@ -62,8 +67,21 @@ WindowSums& WindowAverager::destination(const Visit& visit) {
     if (visit.begins_part) parts_.emplace_back(plan_.means, no_blocks);
     return parts_.back();
   }
-  if (visit.begins_part) sums_->begin_block(visit.block);
+  if (setting_.pipeline.until) {
+    begin_growing_block(visit);
+  } else if (visit.begins_part) {
+    sums_->begin_block(visit.block);
+  }
   return *sums_;
+}
+
+void WindowAverager::begin_growing_block(const Visit& visit) {
+  const std::size_t fewest = setting_.pipeline.blocks;
+  if (visit.sweep == 0) {
+    frames_ = visit.place + 1;
+    if (growing_block_length(fewest, frames_) > growing_block_length(fewest, visit.place)) sums_->join_blocks();
+  }
+  sums_->begin_block(visit.place / growing_block_length(fewest, frames_));
 }
 
 void WindowAverager::add(FrameContext& frame, const Visit& visit) {
@@ -88,6 +106,7 @@ void WindowAverager::end_sweep(const Visit& visit) {
 
 void WindowAverager::save(ByteWriter& to) const {
   to.number(std::uint64_t{first_part_});
+  to.number(std::uint64_t{frames_});
   to.number(std::uint64_t{parts_.size()});
   for (const WindowSums& part : parts_) part.save(to);
   sums_->save(to);
@@ -98,6 +117,7 @@ void WindowAverager::save(ByteWriter& to) const {
 
 void WindowAverager::load(ByteReader& from) {
   first_part_ = from.count();
+  frames_ = from.count();
   for (std::size_t left = from.count(); left > 0; --left) parts_.emplace_back(plan_.means, no_blocks).load(from);
   sums_->load(from);
   if (from.number<bool>()) means_.emplace(sums_->means(load_topology(from)));

@@ -42,7 +42,7 @@ class WindowAverager {
   void end_sweep(const Visit& visit);
   /// Of the sweeps that have ended: a view of the sums, which begin_window takes away.
   const MomentMeans& means() const { return *means_; }
-  /// Those sums, with those over the blocks of the window.
+  /// Those sums, with those over the blocks of the window; also in the midst of a sweep.
   const WindowSums& sums() const { return *sums_; }
   void begin_window();
 
@@ -53,6 +53,7 @@ class WindowAverager {
 
  private:
   WindowSums& destination(const Visit& visit);
+  void begin_growing_block(const Visit& visit);
   void join_parts(const Window& window);
   void want_leaves(const SweepGroups& groups, const Region& region);
 
@@ -63,6 +64,7 @@ class WindowAverager {
   std::size_t bytes_per_leaf_;       // of all sums
   std::deque<WindowSums> parts_;     // that overlapping windows share
   std::size_t first_part_ = 0;       // of those
+  std::size_t frames_ = 0;           // of the first sweep, where blocks grow
   std::optional<WindowSums> sums_;   // of the window
   std::optional<MomentMeans> means_;
 };

@@ -279,6 +279,7 @@ void Hdf5Sink::commit(const Provenance& provenance) {
   for (const auto& [key, text] : provenance) {
     hdf5_->create_text("/provenance/" + key, text);
     if (key == "version") hdf5_->text_attribute("/", "grainvdb_version", text);
+    if (key == "averaging") hdf5_->text_attribute("/", "averaging", text);
   }
   hdf5_->close();
   file_->finish();

@@ -264,7 +264,7 @@ TEST(StandardErrors, CostNothingWhereTheyAreNotWanted) {
   Pipeline p = scene.pipeline({"phi", "velocity"});
   p.blocks = 1000;  // more than there are frames
   const Result r = run(p, scene.frames);
-  EXPECT_TRUE(r.plan.by_block.empty());
+  EXPECT_TRUE(r.plan.errors.by_block.empty());
   EXPECT_TRUE(r.plan.block_sums.empty());
   EXPECT_EQ(r.report.grids, 4U);
   EXPECT_THAT(r.report.averaging, ElementsAre("1 output time of 4 frames"));
@@ -279,8 +279,8 @@ TEST(StandardErrors, SumByBlocksOnlyWhatTheyNeed) {
   const Plan plan = make_plan(p);
   ASSERT_EQ(plan.block_sums.size(), 1U);
   EXPECT_EQ(plan.block_sums[0]->channels, 1);
-  ASSERT_EQ(plan.by_block.size(), 1U);
-  EXPECT_EQ(plan.by_block[0]->name, "phi");
+  ASSERT_EQ(plan.errors.by_block.size(), 1U);
+  EXPECT_EQ(plan.errors.by_block[0]->name, "phi");
   // The field itself is derived, but not written.
   const Result r = run(p, scene.frames);
   EXPECT_EQ(r.only().fields.size(), 2U);

@@ -119,6 +119,25 @@ TEST_F(Resume, GivesASeries) {
   expect_the_same_wherever_it_is_interrupted();
 }
 
+// The kinetic stress is summed by blocks in the second sweep.
+TEST_F(Resume, GivesStandardErrors) {
+  pipeline_.fields = {"phi", "phi_error", "stress_error"};
+  pipeline_.blocks = 3;
+  expect_the_same_wherever_it_is_interrupted();
+}
+
+// Of eight frames two are averaged in each of two sweeps, or all where the target is out of reach.
+TEST_F(Resume, GivesAnAverageThatStopsByItself) {
+  pipeline_.blocks = 2;
+  pipeline_.until = Until{.field = "phi", .error = 1, .relative = false, .quantile = 0.3};
+  MemorySource source(frames_);
+  ASSERT_EQ(run(pipeline_, source).report.stop->frames, 2U);
+  pipeline_.until->error = 1e-30;
+  expect_the_same_wherever_it_is_interrupted();
+  pipeline_.until->error = 1;
+  expect_the_same_wherever_it_is_interrupted();
+}
+
 TEST_F(Resume, GivesWindowsThatSlide) {
   pipeline_.window = 4;
   pipeline_.window_step = 2;

@@ -1,11 +1,14 @@
 #include "average/time_windows.hpp"
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "average/growing_blocks.hpp"
 
 namespace grainvdb {
 namespace {
@@ -78,6 +81,21 @@ TEST(TimeWindows, BlocksOfSlidingWindows) {
   EXPECT_THAT(part_sizes(s), ElementsAre(2, 3, 2, 3, 2, 3, 2, 3));
   for (const Window& w : s.windows) EXPECT_THAT(w.blocks, ElementsAre(1, 1, 1, 1));
   EXPECT_THAT(schedule_windows({7, 1, 3}, 9).windows[0].blocks, ElementsAre(2, 2, 3));
+}
+
+TEST(GrowingBlocks, AreBetweenTheFewestAndTwiceAsMany) {
+  for (const std::size_t fewest : {2U, 3U, 10U})
+    for (std::size_t frames = 1; frames < 300; ++frames) {
+      const std::size_t length = growing_block_length(fewest, frames);
+      EXPECT_LE(frames, 2 * fewest * length);
+      EXPECT_GE(frames / length, std::min(frames, fewest));
+      // Where it grows all blocks are full, and an even number.
+      const std::size_t next = growing_block_length(fewest, frames + 1);
+      if (next != length) {
+        EXPECT_EQ(next, 2 * length);
+        EXPECT_EQ(frames, 2 * fewest * length);
+      }
+    }
 }
 
 // Whatever is asked for: parts do not overlap, windows are made of whole parts, and at most one is short.

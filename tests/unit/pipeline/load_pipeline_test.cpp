@@ -213,5 +213,30 @@ TEST(Overrides, MayRepairTheFile) {
   EXPECT_EQ(load(text, {"kernel.cutoff=3"}).cutoff, 3);
 }
 
+TEST(LoadPipeline, AverageUntil) {
+  const auto with = [](const std::string& average) {
+    const PipelineFile file(
+        "grainvdb: 1\ninput: {particles: a}\nlattice: {voxel: 1}\nkernel: {cutoff: 3}\n"
+        "output: {fields: [phi]}\naverage: " +
+        average + "\n");
+    return load_pipeline(file.path());
+  };
+  EXPECT_FALSE(with("{window: all}").until);
+  const Pipeline p = with("{blocks: 8, until: {field: mu, relative: 0.01, quantile: 0.9}}");
+  EXPECT_EQ(p.blocks, 8U);
+  ASSERT_TRUE(p.until);
+  EXPECT_EQ(p.until->field, "mu");
+  EXPECT_EQ(p.until->error, 0.01);
+  EXPECT_TRUE(p.until->relative);
+  EXPECT_EQ(p.until->quantile, 0.9);
+  EXPECT_FALSE(with("{until: {field: velocity, error: 2, quantile: 1}}").until->relative);
+  for (const char* refused :
+       {"{until: {field: mu, quantile: 0.9}}", "{until: {field: mu, error: 1, relative: 1, quantile: 0.9}}",
+        "{until: {field: mu, error: 1}}", "{until: {field: mask, error: 1, quantile: 0.9}}",
+        "{until: {field: mu, error: 0, quantile: 0.9}}", "{until: {field: mu, error: 1, quantile: 1.1}}",
+        "{window: 4, until: {field: mu, error: 1, quantile: 0.9}}", "{blocks: 1}"})
+    EXPECT_THROW(with(refused), ConfigError) << refused;
+}
+
 }  // namespace
 }  // namespace grainvdb
