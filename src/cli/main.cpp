@@ -104,6 +104,7 @@ int run(int argc, char** argv) {
   add_schema(app);
   add_spot(app);
   add_report(app);
+  add_tune(app);
   add_completion(app);
   add_man(app);
   try {

@@ -1,0 +1,97 @@
+#pragma once
+/// Speed against accuracy, measured on the user's own dumps: what each setting of a pipeline costs, how far its fields
+/// lie from those of a reference run, and which is the cheapest that is good enough.
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "grainvdb/frame_source.hpp"
+#include "grainvdb/pipeline.hpp"
+#include "grainvdb/plan.hpp"
+
+namespace grainvdb {
+
+/// How far a field lies from the reference. Compared at voxel centres of the reference, which lie between those of any
+/// setting: there the setting's field is interpolated trilinearly, as it is read in use, so that the voxel size counts.
+/// Sums run over the points at which both have a value, and over all components; fields that are ratios are weighted
+/// with the reference's phi, where it can be had, since they vary wildly where there is next to nothing.
+struct FieldError {
+  std::string field;
+  double rms = 0;             ///< √(Σ|f - r|²/Σ|r|²); 0 where both are zero, infinite where only r is
+  double largest = 0;         ///< max|f - r| over the root mean square of r
+  std::size_t points = 0;     ///< at which both have a value
+  std::size_t undefined = 0;  ///< at which the reference alone has one
+};
+
+/// One setting that was tried.
+struct Trial {
+  std::vector<std::string> set;      ///< "key=value" where it differs from the current setting; none: the current one
+  std::vector<double> seconds{};     ///< of every repeat: reading, splatting, averaging and deriving; not writing
+  std::vector<FieldError> errors{};  ///< of the wanted fields that can be compared, in their order
+  std::string refused{};             ///< why it cannot be run; empty when it was
+
+  double best_seconds() const;
+  /// What it sets, "as it is" for the current setting.
+  std::string name() const;
+};
+
+/// A key of the pipeline file and the values that are tried, as in --set. The current value is not among them.
+struct Knob {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+struct TuneRequest {
+  std::string file;                           ///< the pipeline
+  std::vector<std::string> overrides{};       ///< "key=value" of the current setting
+  std::vector<std::string> reference{};       ///< "key=value" on top of what the reference has by itself
+  std::map<std::string, double> tolerance{};  ///< field → largest rms
+  std::vector<Knob> knobs{};                  ///< those to try; see default_knobs
+  std::size_t repeats = 3;                    ///< runs of each setting, of which the fastest counts
+  std::size_t most_runs = 120;                ///< of the pipeline, in all
+  std::function<double()> clock{};            ///< seconds since any moment; the steady clock when empty
+  /// Called before each run and after each of its frames: runs done, runs planned, what runs, frames done, frames.
+  struct Step {
+    std::size_t run, runs;
+    std::string what;
+    std::size_t frames, frames_total;
+  };
+  std::function<void(const Step&)> progress{};
+};
+
+struct TuneReport {
+  std::vector<std::string> reference;  ///< the reference's overrides, complete
+  std::size_t reference_points = 0;    ///< voxel centres at which fields are compared
+  double reference_seconds = 0;
+  std::vector<std::string> fields;        ///< that are compared
+  std::vector<std::string> not_compared;  ///< wanted fields without a norm: directions, counts
+  std::vector<Trial> trials;              ///< the current setting first
+  std::vector<bool> front;                ///< of each trial: no other is both faster and closer (see score)
+  std::size_t proposed = 0;               ///< of the trials; the current one where nothing cheaper is good enough
+  bool proposal_meets = false;            ///< whether the proposed trial keeps to the tolerances
+};
+
+/// What is tried unless the user says otherwise: the voxel size (×½ … 2, as periods allow), the line integral, the
+/// modes of temperature and spin fluctuation, the gradient, the number of frames; each only where a wanted field
+/// depends on it.
+std::vector<Knob> default_knobs(const Pipeline& pipeline, const Plan& plan, FrameSource& source);
+
+/// Runs the reference, the current setting, every value of every knob by itself, and then the combinations that
+/// promise to be the cheapest within the tolerances. The reference has voxels of half the size on a lattice shifted
+/// by a fraction of them, line integrals in closed form and in double, and gradients of the kernel. The output is
+/// averaged over all frames in one window. Throws ConfigError for a setting that cannot be the current or the reference
+/// one and for a tolerance of a field that is not compared (with "did you mean"); LimitError where more than
+/// `most_runs` would be needed; and what running the pipeline throws.
+TuneReport tune(const TuneRequest& request, FrameSource& source);
+
+/// The largest ratio of an error to its tolerance; without tolerances the largest error. Infinite when refused.
+double score(const Trial& trial, const std::map<std::string, double>& tolerance);
+
+/// The report as a table and a proposal, as `grainvdb tune` prints it.
+std::string describe(const TuneReport& report, const std::map<std::string, double>& tolerance);
+/// One row per setting and field.
+std::string to_csv(const TuneReport& report, const std::map<std::string, double>& tolerance);
+
+}  // namespace grainvdb

@@ -1,0 +1,209 @@
+#include "grainvdb/tune.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numbers>
+#include <set>
+
+#include "grainvdb/run.hpp"
+#include "pipeline/text.hpp"
+#include "tune/field_error.hpp"
+#include "tune/nine_digits.hpp"
+#include "tune/proposal.hpp"
+
+namespace grainvdb {
+namespace {
+
+constexpr std::size_t most_points = 100'000;
+constexpr std::size_t most_combinations = 4;  // that are run to see whether the prediction holds
+
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Fields whose distance means nothing: axes without a sense of direction, counts, flags, errors of other fields.
+bool has_a_norm(const std::string& field) {
+  static const std::set<std::string> without{"principal_axes", "slip_lines", "frames", "mask"};
+  return !without.contains(field) && !field.ends_with("_error");
+}
+
+bool runs(const Plan& plan, const std::string& stage) {
+  return std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage* s) { return s->name == stage; });
+}
+
+/// Whether the volumes of the grains are read, so that phi costs no column.
+bool has_volumes(const Plan& plan) {
+  return std::any_of(plan.sweeps.begin(), plan.sweeps.end(),
+                     [](const Sweep& s) { return s.columns.has(Column::radius); });
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+/// What the reference differs in. Between voxels of size h/2 the lattice is shifted by ½ (1 - 1/√3) of one along each
+/// axis: to a lattice of the same size its points are where linear interpolation errs as much as in the mean over a
+/// voxel, and they meet no other lattice's centres.
+std::vector<std::string> reference_of(const Pipeline& pipeline, const Plan& plan) {
+  const double voxel = pipeline.voxel / 2;
+  const double shift = (1 - 1 / std::numbers::sqrt3) / 2;
+  const auto shifted = [&](std::size_t axis) { return nine_digits(pipeline.origin[axis] + shift * voxel); };
+  std::vector<std::string> set{"lattice.voxel=" + nine_digits(voxel),
+                               "lattice.origin=[" + shifted(0) + ',' + shifted(1) + ',' + shifted(2) + ']'};
+  if (runs(plan, "contact_stress")) set.emplace_back("stages.contact_stress.line_integral=exact");
+  for (const char* stage : {"velocity_gradient", "angular_velocity_gradient"})
+    if (runs(plan, stage)) set.push_back("stages." + std::string(stage) + ".method=kernel");
+  return set;
+}
+
+class Tuning {
+ public:
+  Tuning(const TuneRequest& request, FrameSource& source)
+      : request_(request),
+        source_(source),
+        clock_(request.clock ? request.clock : steady_seconds),
+        current_(load({})),
+        plan_(make_plan(current_)) {
+    for (const std::string& field : current_.fields)
+      (has_a_norm(field) ? report_.fields : report_.not_compared).push_back(field);
+    check_tolerances();
+  }
+
+  TuneReport run() {
+    list_trials();
+    check_runs();
+    run_reference();
+    for (std::size_t repeat = 0; repeat < request_.repeats; ++repeat)
+      for (Trial& trial : report_.trials) run_trial(trial, repeat);
+    run_combinations();
+    report_.front = pareto_front(report_.trials, request_.tolerance);
+    report_.proposed = choose(report_.trials, request_.tolerance);
+    report_.proposal_meets = meets(report_.trials[report_.proposed], request_.tolerance);
+    return std::move(report_);
+  }
+
+ private:
+  /// One mean over all frames, whatever the pipeline averages over.
+  Pipeline load(const std::vector<std::string>& set) const {
+    Pipeline pipeline = load_pipeline(request_.file, joined(request_.overrides, set));
+    pipeline.window = pipeline.window_step = 0;
+    pipeline.until.reset();
+    return pipeline;
+  }
+
+  void check_tolerances() const {
+    for (const auto& [field, most] : request_.tolerance) {
+      if (std::find(report_.fields.begin(), report_.fields.end(), field) != report_.fields.end()) continue;
+      throw ConfigError({{"--tolerance", 0},
+                         "no wanted field that can be compared is called " + quote_text(field),
+                         {},
+                         join_choices(report_.fields),
+                         did_you_mean(field, report_.fields)});
+    }
+  }
+
+  void list_trials() {
+    report_.trials.push_back({});
+    knob_of_.emplace_back();
+    for (const Knob& knob : request_.knobs)
+      for (const std::string& value : knob.values) {
+        report_.trials.push_back({{knob.key + '=' + value}});
+        knob_of_.push_back(knob.key);
+      }
+  }
+
+  void check_runs() {
+    const std::size_t combinations = request_.tolerance.empty() ? 0 : most_combinations;
+    planned_ = 1 + (report_.trials.size() + combinations) * request_.repeats;
+    if (planned_ <= request_.most_runs) return;
+    throw LimitError({{"--max-runs", 0},
+                      "more runs of the pipeline would be needed than are allowed",
+                      std::to_string(planned_) + ": one of the reference, and " + std::to_string(request_.repeats) +
+                          " of each of " + std::to_string(report_.trials.size() + combinations) + " settings",
+                      "at most " + std::to_string(request_.most_runs),
+                      "Try fewer knobs or values, repeat less often, or raise the limit"});
+  }
+
+  struct Timed {
+    FieldSet result;
+    double seconds;
+  };
+
+  /// Nothing is written.
+  Timed timed_run(const Pipeline& pipeline, const std::string& what) {
+    const Plan plan = make_plan(pipeline);
+    Timed timed{{check_against_input(pipeline, plan, source_), {}}, 0};
+    TuneRequest::Step step{done_++, planned_, what, 0, 0};
+    const auto tell = [&](const Progress& p) {
+      step.frames = p.frames_done;
+      step.frames_total = p.frames_total;
+      if (request_.progress) request_.progress(step);
+    };
+    tell({});
+    const double start = clock_();
+    compute_fields(
+        pipeline, plan, source_, [&](OutputFields output) { timed.result.fields = std::move(output.fields); }, tell);
+    timed.seconds = clock_() - start;
+    return timed;
+  }
+
+  void run_reference() {
+    report_.reference = joined(reference_of(current_, plan_), request_.reference);
+    Pipeline pipeline = load(report_.reference);
+    const bool with_phi = has_volumes(plan_);
+    if (with_phi && std::find(pipeline.fields.begin(), pipeline.fields.end(), "phi") == pipeline.fields.end())
+      pipeline.fields.emplace_back("phi");
+    const Timed timed = timed_run(pipeline, "the reference");
+    report_.reference_seconds = timed.seconds;
+    points_ = reference_points(timed.result, report_.fields, with_phi ? "phi" : "", most_points);
+    report_.reference_points = points_.position.size();
+  }
+
+  /// A setting that cannot be run is reported as refused; only the current one must be possible.
+  void run_trial(Trial& trial, std::size_t repeat) {
+    if (!trial.refused.empty()) return;
+    try {
+      const Timed timed = timed_run(load(trial.set), trial.name());
+      trial.seconds.push_back(timed.seconds);
+      if (repeat == 0) trial.errors = field_errors(points_, timed.result);
+    } catch (const Error& error) {
+      const bool impossible = dynamic_cast<const ConfigError*>(&error) || dynamic_cast<const LimitError*>(&error);
+      if (trial.set.empty() || !impossible) throw;
+      trial.refused = error.what();
+      trial.seconds.clear();
+    }
+  }
+
+  /// Runs the combinations that promise to be faster than all that meets the tolerances so far, until one does.
+  void run_combinations() {
+    for (const Combination& c : promising(report_.trials, knob_of_, request_.tolerance, most_combinations)) {
+      const Trial& best = report_.trials[choose(report_.trials, request_.tolerance)];
+      if (meets(best, request_.tolerance) && c.seconds >= best.best_seconds()) return;
+      Trial trial;
+      for (std::size_t t : c.trials) trial.set.push_back(report_.trials[t].set.front());
+      for (std::size_t repeat = 0; repeat < request_.repeats; ++repeat) run_trial(trial, repeat);
+      report_.trials.push_back(std::move(trial));
+      knob_of_.emplace_back();
+    }
+  }
+
+  const TuneRequest& request_;
+  FrameSource& source_;
+  std::function<double()> clock_;
+  Pipeline current_;
+  Plan plan_;
+  std::vector<std::string> knob_of_;  // of each trial
+  ReferencePoints points_;
+  std::size_t planned_ = 0;
+  std::size_t done_ = 0;
+  TuneReport report_;
+};
+
+}  // namespace
+
+TuneReport tune(const TuneRequest& request, FrameSource& source) {
+  return Tuning(request, source).run();
+}
+
+}  // namespace grainvdb

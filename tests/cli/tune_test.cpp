@@ -1,0 +1,40 @@
+#include <gmock/gmock.h>
+
+#include "cli/command.hpp"
+#include "cli/example_dumps.hpp"
+
+namespace grainvdb::test {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+TEST(Tune, PrintsATableAndWritesIt) {
+  const Folder folder;
+  write_example(folder);
+  const CommandResult r = run_command({"tune", "p.yaml", "--tolerance", "phi=0.5,velocity=0.5", "--repeats", "1",
+                                       "--knobs", "lattice.voxel", "--no-picture"},
+                                      folder.path());
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_THAT(r.out, AllOf(HasSubstr("as it is"), HasSubstr("lattice.voxel="), HasSubstr("Wrote tune/tune.csv")));
+  EXPECT_THAT(read_file(folder / "tune/tune.csv"), HasSubstr("\"\",1,"));
+}
+
+TEST(Tune, RefusesOptionsThatMakeNoSense) {
+  const Folder folder;
+  write_example(folder);
+  for (const std::vector<std::string>& options :
+       std::vector<std::vector<std::string>>{{"--tolerance", "phi"},
+                                             {"--tolerance", "mu=0.1"},
+                                             {"--knobs", "lattice.vox"},
+                                             {"--try", "output.fields=[phi]"}}) {
+    std::vector<std::string> arguments{"tune", "p.yaml", "--no-picture"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const CommandResult r = run_command(arguments, folder.path());
+    EXPECT_EQ(r.exit_code, 1) << options[1];
+    EXPECT_THAT(r.err, HasSubstr(options[0])) << options[1];
+  }
+}
+
+}  // namespace
+}  // namespace grainvdb::test
