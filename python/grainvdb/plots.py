@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from . import laws
+from .collapse import Collapse, collapse
 from .fields import AXES, Fields
 from .tracers import Tracers
 
@@ -194,3 +195,21 @@ def tracer_history(tracers: Tracers, name: str, ax: Axes | None = None) -> Axes:
     ax.set(xlabel=label("time", tracers.time_unit), ylabel=label(name, tracers.unit(name)))
     ax.grid(alpha=0.3)
     return ax
+
+
+def tracer_against(tracers: Tracers, x: str, y: str, where: np.ndarray | None = None, ax: Axes | None = None,
+                   bins: int = 25) -> tuple[Axes, Collapse]:
+    """One recorded quantity against another along the ways of tracers, `where` they count, with the mean of each bin and the
+    scatter about it."""
+    ax = ax or plt.subplots()[1]
+    counts = tracers.moving if where is None else tracers.moving & where
+    a, b = (np.where(counts, tracers.values(name), np.nan).astype(float) for name in (x, y))
+    found = collapse(a, b, bins)
+    ax.plot(a, b, color="0.8", linewidth=0.3, rasterized=True)
+    ax.plot(found.centres, found.means, "k.-", linewidth=1.2)
+    low, high = np.nanpercentile(b, [0.2, 99.8])
+    ax.set(xlabel=label(x, tracers.unit(x)), ylabel=label(y, tracers.unit(y)), xlim=np.nanpercentile(a, [0, 99.5]),
+           ylim=(low - 0.05 * (high - low), high + 0.05 * (high - low)),
+           title=f"scatter/spread = {found.share:.2f}")
+    ax.grid(alpha=0.3)
+    return ax, found

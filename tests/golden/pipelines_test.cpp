@@ -9,6 +9,7 @@
 
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/pipeline.hpp"
+#include "support/memory_tracers.hpp"
 #include "support/reference.hpp"
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
@@ -62,12 +63,30 @@ TEST_P(ShippedPipeline, Runs) {
 INSTANTIATE_TEST_SUITE_P(Pipelines, ShippedPipeline, ::testing::Values("minimal", "shear_cell", "silo"),
                          [](const auto& param) { return std::string(param.param); });
 
+TEST(ShippedPipelines, FollowElementsThroughTheSilo) {
+  const Pipeline p = load_pipeline(folder() + "/silo_elements.yaml");
+  const auto source = open_dumps(p.input);
+  const Histories h = trace(p, *source);
+  EXPECT_EQ(h.layout.id.size(), 18U);
+  EXPECT_EQ(h.layout.fields.size(), p.trace->record.size());
+  EXPECT_TRUE(h.report.trace->is_meaningful());
+  const TracerSample& last = h.samples.back();
+  std::size_t through_the_slot = 0;
+  for (std::size_t i = 0; i < h.layout.id.size(); ++i) {
+    EXPECT_LT(last.displacement[2][i], 0);
+    EXPECT_GT(last.strain[i], 0.5);
+    EXPECT_TRUE(std::isfinite(last.fields[3][i])) << "mu";
+    through_the_slot += last.position[2][i] < 1 && std::abs(last.position[0][i]) < 3 ? 1U : 0U;
+  }
+  EXPECT_GT(through_the_slot, 9U);  // the others are still beside it
+}
+
 TEST(ShippedPipelines, AreAllTested) {
   std::vector<std::string> names;
   for (const auto& file : std::filesystem::directory_iterator(folder()))
     if (!file.path().stem().string().starts_with("spot_")) names.push_back(file.path().stem());
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"minimal", "shear_cell", "silo"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"minimal", "shear_cell", "silo", "silo_elements"}));
 }
 
 }  // namespace
