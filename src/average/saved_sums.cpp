@@ -25,7 +25,6 @@ std::set<std::string> load_names(ByteReader& from) {
 void MomentSums::save(ByteWriter& to) const {
   to.number(first_sweep_);
   to.number(std::uint64_t{frames_});
-  to.number(first_sweep_);
   save_names(to, added_);
   save_names(to, complete_);
   to.number(std::uint64_t{leaves_.size()});
@@ -41,7 +40,6 @@ void MomentSums::save(ByteWriter& to) const {
 void MomentSums::load(ByteReader& from) {
   first_sweep_ = from.number<bool>();
   frames_ = from.count();
-  first_sweep_ = from.number<bool>();
   added_ = load_names(from);
   complete_ = load_names(from);
   for (std::size_t left = from.count(); left > 0; --left) {

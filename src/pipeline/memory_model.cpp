@@ -101,6 +101,10 @@ double components_at_hand(const Plan& plan, const Pipeline& pipeline) {
     std::erase_if(
         alive, [&](const auto& field) { return !is_wanted(pipeline, field.first) && !needed.contains(field.first); });
   }
+  // For standard errors all that they need is derived once more beside it.
+  for (const Stage* stage : plan.stages)
+    if (!stage->error_of.empty()) most += stage->components;
+  for (const Stage* stage : plan.errors.by_block) most += stage->components;
   return most;
 }
 
