@@ -26,6 +26,9 @@ class StageOrder {
     for (const std::string& field : pipeline.fields) visit(field, asks_);
     if (pipeline.trace) asks_ = "trace";
     for (const std::string& field : computed_fields(pipeline)) visit(field, asks_);
+    if (!pipeline.until) return;
+    asks_ = "average.until";
+    visit(pipeline.until->field + "_error", asks_);
   }
 
   std::vector<const Stage*> ordered() const {

@@ -145,13 +145,12 @@ std::vector<FieldError> field_errors(const ReferencePoints& reference, const Fie
     same.push_back(it == found.fields.end() ? nullptr : &it->second);
   }
   std::vector<Sums> sums(reference.fields.size());
-  if (!found.fields.empty()) {
-    const Topology& topology = *found.fields.begin()->second.topology();
-    for (std::size_t p = 0; p < reference.position.size(); ++p) {
-      const Stencil at(found.lattice, topology, reference.position[p]);
-      for (std::size_t k = 0; k < sums.size(); ++k)
-        sums[k].add(reference.fields[k], reference.fields[k].is_ratio ? reference.weight[p] : 1, p, at, same[k]);
-    }
+  static const Topology nothing;
+  const Topology& topology = found.fields.empty() ? nothing : *found.fields.begin()->second.topology();
+  for (std::size_t p = 0; p < reference.position.size(); ++p) {
+    const Stencil at(found.lattice, topology, reference.position[p]);
+    for (std::size_t k = 0; k < sums.size(); ++k)
+      sums[k].add(reference.fields[k], reference.fields[k].is_ratio ? reference.weight[p] : 1, p, at, same[k]);
   }
   std::vector<FieldError> errors;
   for (std::size_t k = 0; k < sums.size(); ++k) errors.push_back(sums[k].error(reference.fields[k].name));
