@@ -401,6 +401,41 @@ TEST(Walls, RenormalisedStressIsThatOfWhatIsInside) {
   EXPECT_GT(checked, 500U);
 }
 
+// What is left without a block of frames is divided as the whole is: errors of sums scale with them, errors of ratios
+// stay. Both are differences of floats, which are good to 1e-7 of the fields; the jackknife of three blocks doubles
+// that.
+TEST(Walls, StandardErrorsAreThoseOfRenormalisedFields) {
+  const Scene scene = walled_scene();
+  Pipeline p = scene.pipeline({"phi", "phi_error", "velocity", "velocity_error"});
+  p.blocks = 3;
+  p.walls.surfaces = {floor_at(-0.2)};
+  const Result cut = run(p, scene.frames);
+  p.walls.kernel = Kernel::renormalise;
+  const Result r = run(p, scene.frames);
+  const LucyKernel kernel(p.cutoff);
+  const WallDomain domain(p.walls.surfaces);
+  std::size_t checked = 0, divided = 0;
+  r.only().field("phi").for_each_active([&](const Coord& c) {
+    const auto value = [&](const Result& result, const char* name) {
+      return static_cast<double>(result.only().field(name).at(c));
+    };
+    const Vec3 x{0, 0, p.origin[2] + (c.z + 0.5) * p.voxel};
+    if (!domain.contains(x)) {
+      EXPECT_TRUE(std::isnan(value(r, "phi_error")));
+      return;
+    }
+    if (std::isnan(value(cut, "phi_error"))) return;
+    ++checked;
+    const double part = domain.inside_fraction(kernel, x);
+    divided += part < 0.9 ? 1U : 0U;
+    EXPECT_NEAR(value(r, "phi_error") * part, value(cut, "phi_error"), 1e-6 * value(cut, "phi"));
+    EXPECT_NEAR(value(r, "velocity_error"), value(cut, "velocity_error"),
+                1e-6 * std::abs(value(cut, "velocity")) + 1e-6 * value(cut, "velocity_error"));
+  });
+  EXPECT_GT(checked, 500U);
+  EXPECT_GT(divided, 100U);
+}
+
 TEST(Walls, AreRecordedAndCostNothingWhereNotAskedFor) {
   Pipeline p = with_walls(Kernel::renormalise, 0.2, {0, 0, 0}, {"phi"});
   p.walls.faces = {{2, false}};
