@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 
+#include "grainvdb/lattice.hpp"
 #include "grainvdb/pipeline.hpp"
 #include "grainvdb/plan.hpp"
 
@@ -31,6 +32,9 @@ struct MemoryModel {
 
 /// What is read ahead: limits.frames_in_flight, or else one more than there are threads, 8 at most.
 std::size_t frames_in_flight(const Limits& limits);
+
+/// RunSize::images: an image of a particle is within reach of the box where it is within one cutoff of it.
+double images_per_particle(const Lattice& lattice, double cutoff);
 
 MemoryModel memory_model(const Plan& plan, const Pipeline& pipeline);
 

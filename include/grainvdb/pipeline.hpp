@@ -51,6 +51,13 @@ struct Until {
   double quantile = 0;    ///< the share of voxels in which the error must be no larger
 };
 
+/// A cutoff with its voxel.
+struct Scale {
+  double cutoff = 0;     ///< c of the kernel [length]
+  double voxel = 0;      ///< h [length]
+  std::string resolved;  ///< the pipeline at this scale, as Pipeline::resolved
+};
+
 struct Pipeline {
   std::string file;  ///< where it was read from
   InputSpec input;
@@ -61,6 +68,7 @@ struct Pipeline {
   double voxel = 0;                             ///< h [length]
   Vec3 origin{};                                ///< of the lattice [length]
   double cutoff = 0;                            ///< c of the kernel [length]
+  std::vector<Scale> scales;                    ///< to run at, in place of cutoff and voxel; empty: at these
   std::size_t window = 0;                       ///< frames per time average; 0: all frames in one
   std::size_t window_step = 0;       ///< frames from the beginning of one average to that of the next; 0: as window
   std::size_t blocks = 10;           ///< of frames, from whose differences standard errors are estimated

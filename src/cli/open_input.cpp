@@ -4,12 +4,16 @@
 
 namespace grainvdb::cli {
 
-std::unique_ptr<FrameSource> open_input(const Pipeline& pipeline, const Plan& plan) {
+InputSpec needed_input(const Pipeline& pipeline, const Plan& plan) {
   InputSpec spec = pipeline.input;
   if (std::none_of(plan.sweeps.begin(), plan.sweeps.end(),
                    [](const Sweep& sweep) { return sweep.columns.has(Column::contacts); }))
     spec.contacts = {};
-  return open_dumps(spec);
+  return spec;
+}
+
+std::unique_ptr<FrameSource> open_input(const Pipeline& pipeline, const Plan& plan) {
+  return open_dumps(needed_input(pipeline, plan));
 }
 
 }  // namespace grainvdb::cli

@@ -1,6 +1,7 @@
 #include "grainvdb/run.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -13,6 +14,9 @@
 #include "cli/output_folder.hpp"
 #include "cli/progress_line.hpp"
 #include "cli/report.hpp"
+#include "grainvdb/follow.hpp"
+#include "grainvdb/scales.hpp"
+#include "pipeline/number.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -42,6 +46,8 @@ struct Options {
   std::size_t threads = 0;
   bool resume = false;
   double checkpoint_interval = CheckpointOptions{}.interval;
+  bool follow = false;
+  FollowOptions waiting;
   bool quiet = false;
 };
 
@@ -67,14 +73,13 @@ void run(const Pipeline& pipeline, const Options& options) {
 
   const Plan plan = make_plan(pipeline);
   check_output_folder(options.output);
-  const auto source = open_input(pipeline, plan);
   const auto sinks = make_sinks<FieldSink>(pipeline.formats, sink_registry(), options.output);
   std::vector<std::unique_ptr<TracerSink>> tracer_sinks;
   if (pipeline.trace)
     tracer_sinks = make_sinks<TracerSink>(pipeline.trace->formats, tracer_sink_registry(), options.output);
 
   std::optional<CheckpointOptions> checkpoint;
-  if (options.resume) checkpoint = CheckpointOptions{options.output, options.checkpoint_interval};
+  if (options.resume || options.follow) checkpoint = CheckpointOptions{options.output, options.checkpoint_interval};
 
   watch_for_interrupts();
   RunReport report;
@@ -84,10 +89,66 @@ void run(const Pipeline& pipeline, const Options& options) {
       check_for_interrupt();
       if (!options.quiet) line.show(progress);
     };
-    report = run_pipeline(pipeline, plan, *source, sinks, tracer_sinks, show, checkpoint);
+    if (options.follow) {
+      FollowedInput input(needed_input(pipeline, plan));
+      report = follow_pipeline(pipeline, plan, input, sinks, tracer_sinks, options.waiting, *checkpoint, show);
+    } else {
+      report = run_pipeline(pipeline, plan, *open_input(pipeline, plan), sinks, tracer_sinks, show, checkpoint);
+    }
   }
   std::cerr << warnings(report);
   if (!options.quiet) std::cout << describe(report);
+}
+
+std::string folder_of_scale(const std::string& output, const Pipeline& pipeline) {
+  return (std::filesystem::path(output) / ("c" + print_number(pipeline.cutoff) + "_h" + print_number(pipeline.voxel)))
+      .string();
+}
+
+void run_at_scales(const Pipeline& pipeline, const Options& options) {
+  if (options.resume || options.follow)
+    throw ConfigError({pipeline.location("scales"),
+                       "several scales can neither be resumed nor followed",
+                       {},
+                       "one scale, or neither --resume nor --follow",
+                       {}});
+  std::optional<tbb::global_control> threads;
+  if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
+  std::vector<ScaleRun> runs;
+  for (Pipeline& p : at_scales(pipeline)) {
+    const std::string folder = folder_of_scale(options.output, p);
+    check_output_folder(folder);
+    ScaleRun& run = runs.emplace_back();
+    run.plan = make_plan(p);
+    run.sinks = make_sinks<FieldSink>(p.formats, sink_registry(), folder);
+    if (p.trace) run.tracer_sinks = make_sinks<TracerSink>(p.trace->formats, tracer_sink_registry(), folder);
+    run.pipeline = std::move(p);
+  }
+  const auto source = open_input(runs.front().pipeline, runs.front().plan);
+  watch_for_interrupts();
+  std::vector<RunReport> reports;
+  {
+    ProgressLine line(stderr);
+    reports = run_scales(runs, *source, [&](const Progress& progress) {
+      check_for_interrupt();
+      if (!options.quiet) line.show(progress);
+    });
+  }
+  std::cerr << warnings(reports.front());
+  if (options.quiet) return;
+  for (std::size_t n = 0; n < runs.size(); ++n)
+    std::cout << "cutoff " << print_number(runs[n].pipeline.cutoff) << ", voxel "
+              << print_number(runs[n].pipeline.voxel) << '\n'
+              << describe(reports[n]);
+}
+
+// Something must end the waiting.
+void run_or_follow(const Options& options) {
+  if (options.follow && !options.waiting.last_step && !options.waiting.timeout)
+    throw ConfigError({{}, "--follow needs an end", {}, "--last-step N, --timeout SECONDS, or both", {}});
+  const Pipeline pipeline = load(options);
+  if (pipeline.scales.empty()) return run(pipeline, options);
+  run_at_scales(pipeline, options);
 }
 
 void trace(const Options& options) {
@@ -132,8 +193,28 @@ void add_run(CLI::App& app) {
       ->check(CLI::NonNegativeNumber)
       ->needs(resume)
       ->capture_default_str();
+  CLI::Option* follow = command->add_flag(
+      "--follow", options->follow,
+      "Take frames as a simulation writes them, and write the results at the end that --last-step or --timeout names");
+  command->add_option("--last-step", options->waiting.last_step, "With --follow: the step of the last frame to take")
+      ->type_name("N")
+      ->needs(follow);
+  command
+      ->add_option("--timeout", options->waiting.timeout,
+                   "With --follow: end when no frame has come for so many seconds")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(follow);
+  command
+      ->add_option("--look-every", options->waiting.interval,
+                   "With --follow: seconds from one look at the input to the next; a frame is taken when its file has "
+                   "not changed in between")
+      ->type_name("SECONDS")
+      ->check(CLI::PositiveNumber)
+      ->needs(follow)
+      ->capture_default_str();
   command->footer(footer);
-  command->callback([options] { run(load(*options), *options); });
+  command->callback([options] { run_or_follow(*options); });
 }
 
 void add_trace(CLI::App& app) {

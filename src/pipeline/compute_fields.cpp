@@ -2,6 +2,7 @@
 #include <atomic>
 #include <exception>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <set>
 #include <span>
@@ -19,6 +20,7 @@
 #include "pipeline/derive_errors.hpp"
 #include "pipeline/derive_fields.hpp"
 #include "pipeline/schedule.hpp"
+#include "pipeline/steps.hpp"
 #include "pipeline/stopwatch.hpp"
 #include "pipeline/stream.hpp"
 #include "pipeline/until.hpp"
@@ -39,14 +41,6 @@ std::size_t channel_count(const Plan& plan) {
     for (const auto& pass : sweep.passes)
       for (const MomentPtr& m : pass) n += static_cast<std::size_t>(m->channels);
   return n;
-}
-
-/// An image of a particle is within reach of the box where it is within one cutoff of it.
-double images_per_particle(const Lattice& lattice, double cutoff) {
-  double images = 1;
-  for (int axis = 0; axis < 3; ++axis)
-    if (const auto& period = lattice.period(axis)) images *= 1 + 2 * cutoff / (period->length * lattice.voxel());
-  return images;
 }
 
 OutputTime time_of(const FrameSource& source, std::span<const std::size_t> frames) {
@@ -85,8 +79,11 @@ class Stream {
   }
 
   RunReport run();
+  /// Only the visits that further frames would not change.
+  std::size_t run_certain();
 
  private:
+  void go_through(std::span<const Visit> visits);
   MaybeFrame read(const Visit& visit);
   MaybeReady prepare(const Visit& visit, MaybeFrame frame);
   void finish(const Visit& visit, MaybeReady& frame);
@@ -98,6 +95,7 @@ class Stream {
   void end_at(std::size_t frames);
   DeriveSetting derive_setting(const ErrorPlan& errors);
   void note_stop(const DerivedFields& all);
+  void note_step(std::size_t frame);
   void note_size(const FrameContext& frame);
   void show_progress(const Visit& visit);
   OutputTime time_of_window(std::size_t window) const;
@@ -128,6 +126,8 @@ class Stream {
   Progress now_;
   RunReport report_;
   std::size_t outputs_ = 0;  // output times that are finished
+  std::optional<std::size_t> last_window_;
+  std::size_t steps_done_ = 0;  // frames, from the first on, that were visited
   BadFrames bad_;
   RunSize size_;
   std::size_t material_ = 0;  // particles that select kept, over frames and sweeps
@@ -137,25 +137,9 @@ RunReport Stream::run() {
   if (checkpoint_ != nullptr) resume();
   const std::vector<Visit> visits = schedule_visits(schedule_, wanted_, plan_.sweeps.size());
   now_.frames_total = visits.size();
-  const std::span<const Visit> left = std::span(visits).subspan(now_.frames_done);
-
-  // What runs in parallel within a step is isolated: a thread that waits for the rest of it does not begin another
-  // step.
-  const std::size_t in_flight = std::min(frames_in_flight(pipeline_.limits), left.size());
-  ordered_pipeline(
-      left.size(), in_flight,
-      [&](std::size_t i) { return tbb::this_task_arena::isolate([&] { return read(left[i]); }); },
-      [&](std::size_t i, MaybeFrame frame) {
-        return tbb::this_task_arena::isolate([&] { return prepare(left[i], std::move(frame)); });
-      },
-      [&](std::size_t i, MaybeReady frame) {
-        if (is_past_end(left[i])) return;
-        tbb::this_task_arena::isolate([&] { finish(left[i], frame); });
-        frame = {};
-        if (ends_window(left[i])) end_window(left[i].window);
-        show_progress(left[i]);
-        if (checkpoint_ != nullptr && checkpoint_->is_due()) save_progress();
-      });
+  last_window_ = schedule_.windows.size() - 1;
+  for (std::size_t k = 0; k < outputs_; ++k) take_(checkpoint_->load_output(k, lattice_));
+  go_through(std::span(visits).subspan(now_.frames_done));
 
   report_.frames = schedule_.frame_count() - bad_.count();
   report_.bad_frames = bad_.list(source_);
@@ -172,6 +156,39 @@ RunReport Stream::run() {
   report_.wall_seconds = clock_.passed();
   report_.read = source_.counters();
   return report_;
+}
+
+std::size_t Stream::run_certain() {
+  if (pipeline_.until) return 0;  // where averaging ends is told from all the frames that there are
+  const std::vector<Visit> visits = schedule_visits(schedule_, wanted_, plan_.sweeps.size());
+  now_.frames_total = certain_visits(time_windows(pipeline_, plan_), wanted_.size(), plan_.sweeps.size());
+  resume();
+  if (now_.frames_done < now_.frames_total) {
+    go_through(std::span(visits).first(now_.frames_total).subspan(now_.frames_done));
+    save_progress();
+  }
+  return now_.frames_done;
+}
+
+void Stream::go_through(std::span<const Visit> visits) {
+  // What runs in parallel within a step is isolated: a thread that waits for the rest of it does not begin another
+  // step.
+  const std::size_t in_flight = std::min(frames_in_flight(pipeline_.limits), visits.size());
+  ordered_pipeline(
+      visits.size(), in_flight,
+      [&](std::size_t i) { return tbb::this_task_arena::isolate([&] { return read(visits[i]); }); },
+      [&](std::size_t i, MaybeFrame frame) {
+        return tbb::this_task_arena::isolate([&] { return prepare(visits[i], std::move(frame)); });
+      },
+      [&](std::size_t i, MaybeReady frame) {
+        if (is_past_end(visits[i])) return;
+        tbb::this_task_arena::isolate([&] { finish(visits[i], frame); });
+        frame = {};
+        if (ends_window(visits[i])) end_window(visits[i].window);
+        note_step(visits[i].frame);
+        show_progress(visits[i]);
+        if (checkpoint_ != nullptr && checkpoint_->is_due()) save_progress();
+      });
 }
 
 MaybeFrame Stream::read(const Visit& visit) {
@@ -235,6 +252,11 @@ void Stream::end_at(std::size_t frames) {
 
 DeriveSetting Stream::derive_setting(const ErrorPlan& errors) {
   return {pipeline_, errors, lattice_, source_.units(), walls_ ? &*walls_ : nullptr};
+}
+
+void Stream::note_step(std::size_t frame) {
+  const auto place = std::lower_bound(wanted_.begin(), wanted_.end(), frame) - wanted_.begin();
+  steps_done_ = std::max(steps_done_, static_cast<std::size_t>(place) + 1);
 }
 
 void Stream::note_size(const FrameContext& frame) {
@@ -310,7 +332,7 @@ void Stream::note_stop(const DerivedFields& all) {
 }
 
 void Stream::end_window(std::size_t window) {
-  if (window + 1 == schedule_.windows.size()) require_material();
+  if (window == last_window_) require_material();
   DerivedFields derived =
       clock_.time("derive", [&] { return tbb::this_task_arena::isolate([&] { return derive(); }); });
   report_.summed_leaves = averager_.means().topology()->leaf_count();
@@ -331,7 +353,6 @@ void Stream::resume() {
   if (!checkpoint_->has_state()) return;
   checkpoint_->load_state([&](ByteReader& from) { load(from); });
   report_.resumed_at = now_.frames_done;
-  for (std::size_t k = 0; k < outputs_; ++k) take_(checkpoint_->load_output(k, lattice_));
 }
 
 void Stream::save_progress() {
@@ -341,7 +362,9 @@ void Stream::save_progress() {
 void Stream::save(ByteWriter& to) const {
   to.number(std::uint64_t{now_.frames_done});
   to.number(std::uint64_t{outputs_});
-  to.number(std::uint64_t{end_});
+  // Where further frames may come, an end that is only that of the input is none.
+  to.number(end_ < frames_there_ ? std::uint64_t{end_} : std::numeric_limits<std::uint64_t>::max());
+  to.numbers(steps_of(source_, std::span(wanted_).first(steps_done_)));
   averager_.save(to);
   bad_.save(to);
   to.number(size_);
@@ -360,6 +383,9 @@ void Stream::load(ByteReader& from) {
   now_.frames_done = from.count();
   outputs_ = from.count();
   if (const std::size_t end = from.count(); end < frames_there_) end_at(end);
+  const std::vector<std::int64_t> steps = from.numbers<std::int64_t>();
+  require_first_steps(source_, wanted_, steps);
+  steps_done_ = steps.size();
   averager_.load(from);
   bad_.load(from);
   size_ = from.number<RunSize>();
@@ -381,6 +407,15 @@ RunReport stream_fields(const Pipeline& pipeline, const Plan& plan, FrameSource&
   return Stream(pipeline, plan, source, take, progress, lattice, region ? region : region_of(pipeline, lattice),
                 checkpoint)
       .run();
+}
+
+std::size_t stream_certain(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
+                           const std::function<void(const Progress&)>& progress, Checkpoint& checkpoint) {
+  const Lattice lattice = check_against_input(pipeline, plan, source);
+  const std::function<void(OutputFields)> leave_in_checkpoint = [](const OutputFields&) {};
+  return Stream(pipeline, plan, source, leave_in_checkpoint, progress, lattice, region_of(pipeline, lattice),
+                &checkpoint)
+      .run_certain();
 }
 
 RunReport compute_fields(const Pipeline& pipeline, const Plan& plan, FrameSource& source,

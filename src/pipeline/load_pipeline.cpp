@@ -6,6 +6,7 @@
 #include "pipeline/half_step_keys.hpp"
 #include "pipeline/load_config.hpp"
 #include "pipeline/resolved.hpp"
+#include "pipeline/scale_keys.hpp"
 #include "pipeline/schema.hpp"
 #include "pipeline/trace_schema.hpp"
 #include "pipeline/wall_schema.hpp"
@@ -115,7 +116,11 @@ Pipeline load_pipeline(const std::string& file, const std::vector<std::string>& 
   if (auto& half_step = pipeline.input.contacts.half_step; half_step && half_step->dt == 0)
     half_step->dt = pipeline.input.dt.value_or(0);
   check_together(pipeline);
-  pipeline.resolved = resolved_yaml(schema, config.values);
+  // A result is at one scale, and says which.
+  std::map<std::string, ConfigValue> values = config.values;
+  std::erase_if(values, [](const auto& entry) { return entry.first.starts_with("scales."); });
+  complete_scales(pipeline, schema, values);
+  pipeline.resolved = resolved_yaml(schema, values);
   return pipeline;
 }
 

@@ -7,6 +7,7 @@
 
 #include "average/window_sums.hpp"
 #include "base/parallel.hpp"
+#include "grainvdb/lattice.hpp"
 #include "pipeline/derive_errors.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/splat_groups.hpp"
@@ -145,6 +146,13 @@ double MemoryModel::peak(const RunSize& size) const {
   const double frame = size.particles * (per_particle + per_particle_image * size.images) +
                        size.contacts * (per_contact + per_contact_image * size.images);
   return fixed + static_cast<double>(frames_in_flight) * frame + per_voxel * size.voxels;
+}
+
+double images_per_particle(const Lattice& lattice, double cutoff) {
+  double images = 1;
+  for (int axis = 0; axis < 3; ++axis)
+    if (const auto& period = lattice.period(axis)) images *= 1 + 2 * cutoff / (period->length * lattice.voxel());
+  return images;
 }
 
 MemoryModel memory_model(const Plan& plan, const Pipeline& pipeline) {

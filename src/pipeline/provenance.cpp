@@ -54,9 +54,14 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
 }
 
 std::vector<std::pair<std::string, std::string>> key_of_run(const Pipeline& pipeline, const FrameSource& source) {
-  return {{"version", GRAINVDB_VERSION},
-          {"pipeline", pipeline.resolved},
-          {"inputs", lines(source.files(), [](const auto& f) { return f.first + " " + std::to_string(f.second); })}};
+  auto key = key_of_run(pipeline);
+  key.emplace_back("inputs",
+                   lines(source.files(), [](const auto& f) { return f.first + " " + std::to_string(f.second); }));
+  return key;
+}
+
+std::vector<std::pair<std::string, std::string>> key_of_run(const Pipeline& pipeline) {
+  return {{"version", GRAINVDB_VERSION}, {"pipeline", pipeline.resolved}};
 }
 
 }  // namespace grainvdb

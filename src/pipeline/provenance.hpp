@@ -16,5 +16,7 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
 
 /// What two runs must have in common to give the same results: the beginning of the provenance.
 std::vector<std::pair<std::string, std::string>> key_of_run(const Pipeline& pipeline, const FrameSource& source);
+/// The same for inputs that grow: the version and the pipeline.
+std::vector<std::pair<std::string, std::string>> key_of_run(const Pipeline& pipeline);
 
 }  // namespace grainvdb

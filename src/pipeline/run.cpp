@@ -9,6 +9,7 @@
 
 #include "base/parallel.hpp"
 #include "pipeline/provenance.hpp"
+#include "pipeline/run_into.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/stopwatch.hpp"
 #include "pipeline/stream.hpp"
@@ -128,27 +129,23 @@ void Writer::commit(RunReport& report) {
 
 }  // namespace
 
-RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
-                       const std::vector<std::unique_ptr<FieldSink>>& sinks,
-                       const std::vector<std::unique_ptr<TracerSink>>& tracer_sinks,
-                       const std::function<void(const Progress&)>& progress,
-                       const std::optional<CheckpointOptions>& checkpoint) {
+RunReport run_into(const RunSinks& to, const Pipeline& pipeline, const Plan& plan, FrameSource& source,
+                   const std::function<void(const Progress&)>& progress, Checkpoint* checkpoint) {
+  const auto& [sinks, tracer_sinks] = to;
   std::optional<TracePass> tracers;
   if (pipeline.trace && !tracer_sinks.empty()) tracers.emplace(pipeline, plan, source, tracer_sinks);
   RunReport report;
-  std::optional<Checkpoint> kept;
   if (sinks.empty() && tracers) {
     report = tracers->compute(progress);
   } else {
     Writer writer(pipeline, plan, source, sinks);
-    if (checkpoint) kept.emplace(*checkpoint, key_of_run(pipeline, source));
     const bool together = tracers && tracers->goes_along();
     const auto take = [&](OutputFields output) {
       if (together) tracers->take(output);
       writer.take(std::move(output));
     };
     try {
-      report = stream_fields(pipeline, plan, source, take, progress, {}, kept ? &*kept : nullptr);
+      report = stream_fields(pipeline, plan, source, take, progress, {}, checkpoint);
       if (tracers && !together) tracers->compute(progress);
     } catch (...) {
       writer.finish();  // what failed in writing is earlier
@@ -157,8 +154,22 @@ RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& 
     writer.commit(report);
   }
   if (tracers) tracers->commit(report);
-  if (kept) kept->remove();
+  if (checkpoint != nullptr) checkpoint->remove();
   return report;
+}
+
+RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
+                       const std::vector<std::unique_ptr<FieldSink>>& sinks,
+                       const std::vector<std::unique_ptr<TracerSink>>& tracer_sinks,
+                       const std::function<void(const Progress&)>& progress,
+                       const std::optional<CheckpointOptions>& checkpoint) {
+  std::optional<Checkpoint> kept;
+  const bool traces_alone = sinks.empty() && pipeline.trace && !tracer_sinks.empty();
+  if (checkpoint && !traces_alone) {
+    check_against_input(pipeline, plan, source);  // by which all files of the input are known
+    kept.emplace(*checkpoint, key_of_run(pipeline, source));
+  }
+  return run_into({sinks, tracer_sinks}, pipeline, plan, source, progress, kept ? &*kept : nullptr);
 }
 
 RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,

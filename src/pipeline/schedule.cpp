@@ -1,6 +1,7 @@
 #include "pipeline/schedule.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace grainvdb {
 namespace {
@@ -56,6 +57,22 @@ std::vector<Visit> schedule_visits(const WindowSchedule& schedule, std::span<con
   for (std::size_t w = 0; w < schedule.windows.size(); ++w)
     for (std::size_t sweep = 0; sweep < sweeps; ++sweep) add.add(w, sweep);
   return visits;
+}
+
+std::size_t certain_visits(const TimeWindows& windows, std::size_t frames, std::size_t sweeps) {
+  // How long blocks are depends on the number of frames.
+  if (windows.blocks > 1 && windows.length == 0) return 0;
+  const std::size_t further = frames + 2 * (windows.length + windows.step) + 1;
+  std::vector<std::size_t> wanted(further);
+  std::iota(wanted.begin(), wanted.end(), std::size_t{0});
+  const WindowSchedule now = schedule_windows(windows, frames), later = schedule_windows(windows, further);
+  if (now.overlapping != later.overlapping) return 0;
+  const auto visits = schedule_visits(now, std::span(wanted).first(frames), sweeps);
+  const auto visits_later = schedule_visits(later, wanted, sweeps);
+  const auto is_whole = [&](std::size_t window) { return now.windows[window].frames.count == windows.length; };
+  std::size_t n = 0;
+  while (n < visits.size() && visits[n] == visits_later[n] && (windows.blocks == 1 || is_whole(visits[n].window))) ++n;
+  return n;
 }
 
 std::string describe(const WindowSchedule& schedule, const Pipeline& pipeline) {

@@ -21,6 +21,8 @@ struct Visit {
   std::size_t block = 0;     ///< of its window; where windows overlap, a frame of the first sweep has none
   bool begins_part = false;  ///< the first of a part of the schedule
   bool ends_sweep = false;   ///< the last of its sweep over the window
+
+  bool operator==(const Visit&) const = default;
 };
 
 /// What the pipeline says of output times, and of blocks where the plan has standard errors. Where averaging may stop
@@ -30,6 +32,9 @@ TimeWindows time_windows(const Pipeline& pipeline, const Plan& plan);
 /// The visits of a schedule for the frames `wanted`.
 std::vector<Visit> schedule_visits(const WindowSchedule& schedule, std::span<const std::size_t> wanted,
                                    std::size_t sweeps);
+
+/// How many visits of the first so many frames are the same however many frames come after them.
+std::size_t certain_visits(const TimeWindows& windows, std::size_t frames, std::size_t sweeps);
 
 /// How a schedule averages its frames, in words; also where it falls short of what the pipeline asks for.
 std::string describe(const WindowSchedule& schedule, const Pipeline& pipeline);

@@ -13,6 +13,7 @@
 #include "pipeline/frame_range.hpp"
 #include "pipeline/half_step_keys.hpp"
 #include "pipeline/key_builders.hpp"
+#include "pipeline/scale_keys.hpp"
 #include "pipeline/text.hpp"
 #include "pipeline/trace_schema.hpp"
 #include "pipeline/wall_schema.hpp"
@@ -364,6 +365,7 @@ Schema make_schema(const StageRegistry& registry) {
   add_selection(schema);
   add_walls(schema);
   add_method(schema);
+  add_scale_keys(schema);
   add_average_keys(schema, registry);
   add_output(schema, registry);
   add_trace(schema, registry);

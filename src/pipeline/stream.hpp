@@ -1,5 +1,6 @@
 #pragma once
 /// The streaming executor.
+#include <cstddef>
 #include <functional>
 #include <optional>
 
@@ -14,5 +15,10 @@ RunReport stream_fields(const Pipeline& pipeline, const Plan& plan, FrameSource&
                         const std::function<void(OutputFields)>& take,
                         const std::function<void(const Progress&)>& progress, const std::optional<Region>& region,
                         Checkpoint* checkpoint);
+
+/// Goes on with what is certain while further frames are to come, and saves it. Returns the visits of frames that are
+/// done.
+std::size_t stream_certain(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
+                           const std::function<void(const Progress&)>& progress, Checkpoint& checkpoint);
 
 }  // namespace grainvdb

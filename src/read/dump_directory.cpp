@@ -1,12 +1,11 @@
-/// The frames of a run: particle dumps and, on demand, the contact dumps of the same timesteps.
+#include "read/dump_directory.hpp"
+
+#include <algorithm>
 #include <cmath>
 #include <set>
 
-#include "grainvdb/frame_source.hpp"
 #include "read/columns.hpp"
 #include "read/contact_table.hpp"
-#include "read/dump_series.hpp"
-#include "read/file_list.hpp"
 #include "read/particle_table.hpp"
 #include "read/text.hpp"
 
@@ -59,21 +58,24 @@ void check_positive(const InputSpec& spec, const std::string& key, const std::op
                        {}});
 }
 
+/// Takes files out that were met in a directory but are known to belong elsewhere.
+void leave_out(std::vector<InputFile>& files, const std::set<FileIdentity>& elsewhere) {
+  std::erase_if(files, [&](const InputFile& file) { return !file.named && elsewhere.contains(file.identity); });
+}
+
+std::string listed(const std::vector<std::string>& patterns) {
+  std::string all;
+  for (const std::string& pattern : patterns) all += (all.empty() ? "'" : ", '") + pattern + "'";
+  return all;
+}
+
+}  // namespace
+
 void check_spec(const InputSpec& spec) {
   check_positive(spec, "dt", spec.dt);
   check_positive(spec, "density", spec.density);
   check_positive(spec, "radius", spec.radius);
   check_contact_spec(spec);
-}
-
-/// The files that the input names, found without opening any.
-struct InputFiles {
-  std::vector<InputFile> particles, contacts;
-};
-
-/// Takes files out that were met in a directory but are known to belong elsewhere.
-void leave_out(std::vector<InputFile>& files, const std::set<FileIdentity>& elsewhere) {
-  std::erase_if(files, [&](const InputFile& file) { return !file.named && elsewhere.contains(file.identity); });
 }
 
 InputFiles find_files(const InputSpec& spec) {
@@ -86,40 +88,6 @@ InputFiles find_files(const InputSpec& spec) {
   leave_out(files.particles, named_contacts);
   return files;
 }
-
-std::string listed(const std::vector<std::string>& patterns) {
-  std::string all;
-  for (const std::string& pattern : patterns) all += (all.empty() ? "'" : ", '") + pattern + "'";
-  return all;
-}
-
-class DumpDirectory final : public FrameSource {
- public:
-  DumpDirectory(const InputSpec& spec, InputFiles files);
-
-  const std::vector<FrameInfo>& frames() const override { return frames_; }
-  const UnitSystem& units() const override { return units_; }
-  const std::vector<std::string>& particle_columns() const override {
-    return particles_.columns(particles_.frames().front());
-  }
-  std::vector<std::string> contact_columns() override { return contacts_->first_columns(); }
-  std::vector<std::pair<std::string, std::uintmax_t>> files() const override;
-  void require(std::size_t k, ColumnSet wanted) override;
-  Frame read(std::size_t k, ColumnSet wanted) override;
-  std::vector<BadFrame> unreadable() const override;
-  const ReadCounters& counters() const override { return counters_; }
-
- private:
-  std::size_t find_contacts(std::int64_t step);
-  Contacts read_contacts(std::int64_t step);
-
-  InputSpec spec_;
-  ReadCounters counters_;
-  DumpSeries particles_;
-  std::optional<DumpSeries> contacts_;  ///< made in the constructor, once it is known which files hold particles
-  UnitSystem units_;
-  std::vector<FrameInfo> frames_;
-};
 
 DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
     : spec_(spec), particles_(std::move(files.particles), RowKind::particles, spec.on_error, counters_) {
@@ -219,7 +187,23 @@ Contacts DumpDirectory::read_contacts(std::int64_t step) {
   return make_contacts(layout, contacts_->read_rows(layout.request), header, file);
 }
 
-}  // namespace
+void DumpDirectory::keep_frames_with_contacts() {
+  if (spec_.contacts.files.empty()) return;
+  contacts_->build_index();
+  const auto first_without = std::find_if(frames_.begin(), frames_.end(),
+                                          [&](const FrameInfo& frame) { return !contacts_->find(frame.step); });
+  frames_.erase(first_without, frames_.end());
+}
+
+void DumpDirectory::keep_frames_up_to(std::int64_t step) {
+  std::erase_if(frames_, [&](const FrameInfo& frame) { return frame.step > step; });
+}
+
+std::vector<FileIdentity> DumpDirectory::whole_files() const {
+  std::vector<FileIdentity> all = particles_.whole_files();
+  all.insert(all.end(), contacts_->whole_files().begin(), contacts_->whole_files().end());
+  return all;
+}
 
 std::unique_ptr<FrameSource> open_dumps(const InputSpec& spec) {
   check_spec(spec);

@@ -51,7 +51,7 @@ class DumpFile {
   virtual std::optional<FrameHeader> next_header() = 0;
 
   /// After next_header: passes over the rows without converting them. Returns false when the file or the next frame
-  /// comes before the last announced row; read_rows says what is wrong.
+  /// comes before the last announced row has ended; read_rows says what is wrong.
   virtual bool skip_rows() = 0;
 
   /// After next_header: converts the requested columns of all rows. Every row must have as many fields as the header

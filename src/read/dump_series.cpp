@@ -39,7 +39,11 @@ void DumpSeries::build_index() {
   std::vector<bool> used(files_.size(), false);
   for (std::size_t file = 0; file < files_.size(); ++file) {
     const std::size_t before = frames_.size();
-    index_file(file, bytes_per_row);
+    if (files_[file].state == InputFile::State::settled || files_[file].state == InputFile::State::growing) {
+      index_complete_frames(file);
+    } else {
+      index_file(file, bytes_per_row);
+    }
     used[file] = frames_.size() > before;
   }
   open_file_.reset();
@@ -73,6 +77,34 @@ bool DumpSeries::attempt(const InputFile& input, Read read) {
   }
 }
 
+void DumpSeries::add_frame(std::size_t file, std::size_t index_in_file, const FrameHeader& header) {
+  frames_.push_back({file, index_in_file, false, header.start, header.step, header.time, header.rows, header.box,
+                     column_set(header.columns), header.columns_line});
+}
+
+/// Of a file that may still be written to: what is malformed is on its way.
+void DumpSeries::index_complete_frames(std::size_t file) {
+  const InputFile& input = files_[file];
+  bool whole = false;
+  std::size_t count = 0;
+  try {
+    if (!open(file)) return;
+    std::optional<FrameHeader> header = dump_.dump->next_header();
+    while (header && header->kind == kind_ && dump_.dump->skip_rows()) {
+      const bool is_last = dump_.dump->at_end();
+      if (is_last && input.state == InputFile::State::growing) return;
+      note_units(*header, input.path);
+      add_frame(file, count++, *header);
+      whole = is_last;
+      if (is_last) break;
+      header = dump_.dump->next_header();
+    }
+  } catch (const InputError&) {
+    return;
+  }
+  if (whole) whole_files_.push_back(input.identity);
+}
+
 void DumpSeries::index_file(std::size_t file, std::map<FileClass, double>& bytes_per_row) {
   const InputFile& input = files_[file];
   const bool opened = attempt(input, [&] {
@@ -89,15 +121,14 @@ void DumpSeries::index_file(std::size_t file, std::map<FileClass, double>& bytes
       return;
     }
     note_units(*header, input.path);
-    const std::size_t columns = column_set(header->columns);
-    frames_.push_back({file, count++, false, header->start, header->step, header->time, header->rows, header->box,
-                       columns, header->columns_line});
+    add_frame(file, count++, *header);
+    const std::size_t columns = frames_.back().columns;
     if (count == 1) {
       file_class = FileClass{columns, dump_.compression};
       const auto known = bytes_per_row.find(*file_class);
       if (input.size > small_file && known != bytes_per_row.end() &&
           static_cast<double>(input.size) <= spread * known->second * static_cast<double>(header->rows)) {
-        frames_.back().last_in_file = true;
+        frames_.back().last_in_file = input.state == InputFile::State::fixed;
         return;
       }
     }
@@ -105,7 +136,7 @@ void DumpSeries::index_file(std::size_t file, std::map<FileClass, double>& bytes
     if (!attempt(input, [&] { whole = dump_.dump->skip_rows() && whole; })) break;
   }
   if (count == 0) return;
-  frames_.back().last_in_file = true;
+  frames_.back().last_in_file = input.state == InputFile::State::fixed;
   const std::size_t rows = frames_.back().rows;
   if (count == 1 && whole && rows > 0) {
     double& most = bytes_per_row[*file_class];

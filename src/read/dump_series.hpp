@@ -43,7 +43,8 @@ class DumpSeries {
   /// Opens every file and notes its frames. A file is taken to hold one frame, and only its header is read, when a file
   /// of the same columns and compression was read through and held one frame, and this one has at most 1.25 times as
   /// many bytes per row; read_rows finds out should that ever be wrong. Files met in a directory that are no dumps of
-  /// this kind are left out of files(). Throws InputError: a step twice, units in conflict and, unless such frames are
+  /// this kind are left out of files(). Of files that may still be written to only the frames that are complete are
+  /// noted. Throws InputError: a step twice, units in conflict and, unless such frames are
   /// to be skipped, no dump, malformed headers.
   void build_index();
   bool indexed() const { return indexed_; }
@@ -52,6 +53,8 @@ class DumpSeries {
   const std::vector<FrameRecord>& frames() const { return frames_; }
   /// Files, or the rest of files, that the index leaves out for their faults.
   const std::vector<BadFrame>& unreadable() const { return unreadable_; }
+  /// Files that settled and were found complete.
+  const std::vector<FileIdentity>& whole_files() const { return whole_files_; }
   const std::vector<std::string>& columns(const FrameRecord& frame) const { return column_sets_[frame.columns]; }
   /// What the index knows of a frame's header.
   FrameHeader header(const FrameRecord& frame) const;
@@ -73,6 +76,8 @@ class DumpSeries {
   bool open(std::size_t file);
   template <class Read>
   bool attempt(const InputFile& input, Read read);
+  void add_frame(std::size_t file, std::size_t index_in_file, const FrameHeader& header);
+  void index_complete_frames(std::size_t file);
   void index_file(std::size_t file, std::map<FileClass, double>& bytes_per_row);
   void note_units(const FrameHeader& header, const std::string& path);
   std::size_t column_set(const std::vector<std::string>& columns);
@@ -85,6 +90,7 @@ class DumpSeries {
   ReadCounters& counters_;
   std::vector<FrameRecord> frames_;
   std::vector<BadFrame> unreadable_;
+  std::vector<FileIdentity> whole_files_;
   std::vector<std::vector<std::string>> column_sets_;
   std::optional<Stated> units_;
   bool indexed_ = false;

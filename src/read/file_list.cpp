@@ -87,7 +87,8 @@ class FileList {
   /// patterns.
   void put(const std::string& path, const struct stat& status, bool named) {
     const FileIdentity identity{status.st_dev, status.st_ino};
-    const InputFile file{path, static_cast<std::uintmax_t>(status.st_size), identity, named};
+    const std::int64_t changed = std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+    const InputFile file{path, static_cast<std::uintmax_t>(status.st_size), changed, identity, named};
     const auto [entry, is_new] = files_.emplace(identity, file);
     if (is_new) return;
     entry->second.named |= named;

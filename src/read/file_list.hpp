@@ -14,10 +14,20 @@ namespace grainvdb {
 using FileIdentity = std::pair<std::uint64_t, std::uint64_t>;
 
 struct InputFile {
+  /// What is known of a file that may still be written to.
+  enum class State {
+    fixed,    ///< nobody writes to it
+    known,    ///< all its frames were complete when it was last looked through, and it has not changed since
+    settled,  ///< it has not changed since the last look
+    growing   ///< it has: its last frame may be on its way, even if it looks complete
+  };
+
   std::string path;
-  std::uintmax_t size = 0;  ///< [byte]
+  std::uintmax_t size = 0;   ///< [byte]
+  std::int64_t changed = 0;  ///< time of the last change [ns]
   FileIdentity identity;
   bool named = true;  ///< by a path or a glob; false: met in a directory, which may hold other things than dumps
+  State state = State::fixed;
 };
 
 /// Runs of digits compare as numbers: dump2 < dump10 < dump010b.

@@ -76,7 +76,7 @@ bool TextDump::skip_rows() {
 bool TextDump::skip_one_by_one(std::size_t count, std::size_t& left) {
   std::string_view line;
   for (; count > 0; --count, --left) {
-    if (!lines_.next(line)) return false;
+    if (!lines_.next(line) || !lines_.complete()) return false;
     if (line.starts_with(item_mark)) {
       lines_.unread();
       return false;

@@ -9,6 +9,7 @@
 
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/pipeline.hpp"
+#include "grainvdb/scales.hpp"
 #include "support/memory_tracers.hpp"
 #include "support/reference.hpp"
 #include "support/run_in_memory.hpp"
@@ -81,12 +82,35 @@ TEST(ShippedPipelines, FollowElementsThroughTheSilo) {
   EXPECT_GT(through_the_slot, 9U);  // the others are still beside it
 }
 
+TEST(ShippedPipelines, PlateauRunsAtAllItsScales) {
+  const Pipeline p = load_pipeline(folder() + "/plateau.yaml");
+  ASSERT_EQ(p.scales.size(), 4U);
+  const auto source = open_dumps(p.input);
+  std::vector<ScaleRun> runs;
+  std::vector<std::shared_ptr<Record>> records;
+  for (Pipeline& at : at_scales(p)) {
+    ScaleRun& run = runs.emplace_back();
+    run.plan = make_plan(at);
+    run.sinks.push_back(std::make_unique<MemorySink>(records.emplace_back(std::make_shared<Record>())));
+    run.pipeline = std::move(at);
+  }
+  run_scales(runs, *source);
+  // h³Σφ = ΣV: a particle's sum is within 2.2e-3 of its volume at c/h of 3 and more.
+  const double expected = particle_volume(*source, p);
+  for (std::size_t n = 0; n < runs.size(); ++n) {
+    const FieldCopy& phi = records[n]->times.at(0).field("phi");
+    double volume = 0;
+    phi.for_each_active([&](const Coord& c) { volume += static_cast<double>(phi.at(c)); });
+    EXPECT_NEAR(volume * std::pow(runs[n].pipeline.voxel, 3), expected, 2.3e-3 * expected);
+  }
+}
+
 TEST(ShippedPipelines, AreAllTested) {
   std::vector<std::string> names;
   for (const auto& file : std::filesystem::directory_iterator(folder()))
     if (!file.path().stem().string().starts_with("spot_")) names.push_back(file.path().stem());
   std::sort(names.begin(), names.end());
-  EXPECT_EQ(names, (std::vector<std::string>{"minimal", "shear_cell", "silo", "silo_elements"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"minimal", "plateau", "shear_cell", "silo", "silo_elements"}));
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+#pragma once
+/// The frames of a run: particle dumps and, on demand, the contact dumps of the same timesteps.
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "grainvdb/frame_source.hpp"
+#include "read/dump_series.hpp"
+#include "read/file_list.hpp"
+
+namespace grainvdb {
+
+/// The files that the input names, found without opening any.
+struct InputFiles {
+  std::vector<InputFile> particles, contacts;
+};
+
+/// Throws ConfigError where the specification itself cannot be meant.
+void check_spec(const InputSpec& spec);
+
+InputFiles find_files(const InputSpec& spec);
+
+class DumpDirectory final : public FrameSource {
+ public:
+  DumpDirectory(const InputSpec& spec, InputFiles files);
+
+  const std::vector<FrameInfo>& frames() const override { return frames_; }
+  const UnitSystem& units() const override { return units_; }
+  const std::vector<std::string>& particle_columns() const override {
+    return particles_.columns(particles_.frames().front());
+  }
+  std::vector<std::string> contact_columns() override { return contacts_->first_columns(); }
+  std::vector<std::pair<std::string, std::uintmax_t>> files() const override;
+  void require(std::size_t k, ColumnSet wanted) override;
+  Frame read(std::size_t k, ColumnSet wanted) override;
+  std::vector<BadFrame> unreadable() const override;
+  const ReadCounters& counters() const override { return counters_; }
+
+  /// Leaves out frames from the first on that has no contacts, where there are contact dumps.
+  void keep_frames_with_contacts();
+  void keep_frames_up_to(std::int64_t step);
+  /// Files that settled and were found complete.
+  std::vector<FileIdentity> whole_files() const;
+
+ private:
+  std::size_t find_contacts(std::int64_t step);
+  Contacts read_contacts(std::int64_t step);
+
+  InputSpec spec_;
+  ReadCounters counters_;
+  DumpSeries particles_;
+  std::optional<DumpSeries> contacts_;  ///< made in the constructor, once it is known which files hold particles
+  UnitSystem units_;
+  std::vector<FrameInfo> frames_;
+};
+
+}  // namespace grainvdb

@@ -1,0 +1,68 @@
+#include "grainvdb/followed_input.hpp"
+
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "grainvdb/error.hpp"
+#include "read/dump_directory.hpp"
+#include "read/file_list.hpp"
+
+namespace grainvdb {
+namespace {
+
+/// What tells whether a file has changed.
+struct Look {
+  std::uintmax_t size = 0;
+  std::int64_t changed = 0;
+  bool whole = false;
+};
+
+}  // namespace
+
+struct FollowedInput::Seen {
+  InputSpec spec;
+  std::map<FileIdentity, Look> files;
+
+  void judge(std::vector<InputFile>& now) {
+    for (InputFile& file : now) {
+      Look& before = files[file.identity];
+      const bool same = before.size == file.size && before.changed == file.changed;
+      if (!same) before = {file.size, file.changed, false};
+      file.state = !same          ? InputFile::State::growing
+                   : before.whole ? InputFile::State::known
+                                  : InputFile::State::settled;
+    }
+  }
+};
+
+FollowedInput::FollowedInput(InputSpec spec) : seen_(std::make_unique<Seen>()) {
+  check_spec(spec);
+  seen_->spec = std::move(spec);
+}
+
+FollowedInput::~FollowedInput() = default;
+
+const InputSpec& FollowedInput::spec() const {
+  return seen_->spec;
+}
+
+std::unique_ptr<FrameSource> FollowedInput::look(std::optional<std::int64_t> last_step) {
+  try {
+    InputFiles files = find_files(seen_->spec);
+    seen_->judge(files.particles);
+    seen_->judge(files.contacts);
+    auto dumps = std::make_unique<DumpDirectory>(seen_->spec, std::move(files));
+    dumps->keep_frames_with_contacts();
+    if (last_step) dumps->keep_frames_up_to(*last_step);
+    for (const FileIdentity& file : dumps->whole_files()) seen_->files[file].whole = true;
+    if (dumps->frames().empty()) return nullptr;
+    return dumps;
+  } catch (const InputError&) {
+    return nullptr;  // nothing that could be used has come
+  } catch (const IoError&) {
+    return nullptr;  // a file was renamed or removed while it was looked at
+  }
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,112 @@
+#include "grainvdb/followed_input.hpp"
+
+#include "unit/read/dump_files.hpp"
+
+namespace grainvdb {
+namespace {
+
+using namespace testing_dumps;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+std::string grains(std::int64_t step) {
+  return particle_dump(step, "id x y z radius", {"1 0.1 0.2 0.3 0.5", "2 1.1 0.2 0.3 0.61"});
+}
+std::string dump_name(int step) {
+  return std::string("d").append(std::to_string(step));
+}
+std::string contacts(std::int64_t step) {
+  return contact_dump(step, "id1 id2 fx fy fz", {"1 2 1 2 3"});
+}
+
+class FollowedInputTest : public ::testing::Test {
+ protected:
+  void append(const std::string& name, const std::string& text) {
+    std::ofstream(files_.path(name), std::ios::app | std::ios::binary) << text;
+  }
+  std::vector<std::int64_t> steps(std::optional<std::int64_t> last = {}) {
+    std::vector<std::int64_t> result;
+    if (const auto source = input_.look(last))
+      for (const FrameInfo& frame : source->frames()) result.push_back(frame.step);
+    return result;
+  }
+
+  DumpFiles files_;
+  InputSpec spec_ = particles_in({files_.path("d*")});
+  FollowedInput input_{spec_};
+};
+
+TEST_F(FollowedInputTest, AFrameIsThereWhenItIsCompleteAndSettled) {
+  EXPECT_THAT(steps(), IsEmpty());  // not even a file
+  const std::string text = grains(10);
+  std::size_t written = 0;
+  for (const std::size_t until :
+       {std::size_t{1}, text.find("ATOMS"), text.size() / 2, text.size() - 2, text.size() - 1}) {
+    append("d10", text.substr(written, until - written));
+    written = until;
+    // What was cut off may look complete: 0.6 in place of 0.61. That it has settled makes no frame of it.
+    for (int look = 0; look < 3; ++look) EXPECT_THAT(steps(), IsEmpty()) << until;
+  }
+  append("d10", text.substr(written));
+  EXPECT_THAT(steps(), IsEmpty());  // it has only just changed
+  EXPECT_THAT(steps(), ElementsAre(10));
+  EXPECT_THAT(steps(), ElementsAre(10));
+}
+
+TEST_F(FollowedInputTest, FramesOfAFileThatGrowsAreThereWhenAnotherFollows) {
+  append("d", grains(10));
+  EXPECT_THAT(steps(), IsEmpty());
+  append("d", grains(20));
+  EXPECT_THAT(steps(), ElementsAre(10));
+  append("d", grains(30).substr(0, 100));
+  EXPECT_THAT(steps(), ElementsAre(10, 20));
+  EXPECT_THAT(steps(), ElementsAre(10, 20));
+}
+
+TEST_F(FollowedInputTest, FramesThatAreThereCanBeReadWhileTheFileGrows) {
+  append("d", grains(10));
+  steps();
+  steps();
+  const auto source = input_.look();
+  ASSERT_NE(source, nullptr);
+  append("d", grains(20));
+  EXPECT_EQ(source->read(0, Column::radius).particles.radius.at(1), 0.61);
+}
+
+TEST_F(FollowedInputTest, FramesWaitForTheirContacts) {
+  spec_.contacts.files = {files_.path("c*")};
+  FollowedInput input(spec_);
+  const auto count = [&] {
+    const auto source = input.look();
+    return source ? source->frames().size() : 0;
+  };
+  for (int step : {10, 20, 30}) append(dump_name(step), grains(step));
+  append("c10", contacts(10));
+  append("c30", contacts(30));
+  count();
+  EXPECT_EQ(count(), 1U);
+  append("c20", contacts(20).substr(0, contacts(20).size() - 3));
+  count();
+  EXPECT_EQ(count(), 1U);
+  append("c20", contacts(20).substr(contacts(20).size() - 3));
+  count();
+  EXPECT_EQ(count(), 3U);
+}
+
+TEST_F(FollowedInputTest, EndsWithTheLastStep) {
+  for (int step : {10, 20, 30}) append(dump_name(step), grains(step));
+  steps();
+  EXPECT_THAT(steps(25), ElementsAre(10, 20));
+}
+
+TEST_F(FollowedInputTest, CompressedFilesAreThereWhenTheyAreWhole) {
+  const std::string whole = gzipped(grains(10));
+  append("d10.gz", whole.substr(0, whole.size() - 4));
+  for (int look = 0; look < 3; ++look) EXPECT_THAT(steps(), IsEmpty());
+  append("d10.gz", whole.substr(whole.size() - 4));
+  steps();
+  EXPECT_THAT(steps(), ElementsAre(10));
+}
+
+}  // namespace
+}  // namespace grainvdb
