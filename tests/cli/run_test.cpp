@@ -2,6 +2,7 @@
 
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
+#include "support/sample_dumps.hpp"
 
 namespace grainvdb::test {
 namespace {
@@ -22,6 +23,28 @@ TEST(Run, WritesTheFieldsAndSaysWhere) {
   EXPECT_THAT(result.out, AllOf(HasSubstr("3 frames, 512 active voxels"), HasSubstr("wrote output/fields.hdf"),
                                 HasSubstr("paraview output/fields.hdf"), HasSubstr("h5py"), HasSubstr("time:")));
   EXPECT_EQ(result.err, "");  // no progress, as this is no terminal
+}
+
+// On the sample shear cell: five frames, in two of which half the voxels are certain to 30 %.
+TEST(Run, SaysWhereAnAverageStoppedByItself) {
+  const Folder folder;
+  const auto until = [&](const char* target) {
+    return run_command(
+        {"run", ::grainvdb::testing::in_repository("pipelines/minimal.yaml"), "--set", "average.blocks=2", "--set",
+         std::string("average.until={field: phi, quantile: 0.5, ") + target + "}"},
+        folder.path());
+  };
+  const CommandResult met = until("relative: 0.3");
+  ASSERT_EQ(met.exit_code, 0) << met.err;
+  EXPECT_THAT(met.out, HasSubstr("stopped by average.until after 2 of 5 frames: phi_error/|phi| in 50 % of voxels"));
+  EXPECT_EQ(met.err, "");
+  const CommandResult missed = until("error: 1e-12");
+  ASSERT_EQ(missed.exit_code, 0) << missed.err;
+  EXPECT_THAT(missed.out, HasSubstr("average.until was not met after 5 of 5 frames"));
+  EXPECT_THAT(missed.err, HasSubstr("warning: average.until was not met after all 5 frames"));
+  const CommandResult refused = until("error: 1, relative: 1");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("average.until"));
 }
 
 TEST(Run, ReadsNothingThatIsNotNeeded) {

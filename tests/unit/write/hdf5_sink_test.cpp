@@ -258,6 +258,7 @@ TEST(Hdf5Sink, KeepsTheProvenance) {
   const Hdf5Reader file(folder / "fields.hdf");
   for (const auto& [key, text] : some_provenance()) EXPECT_EQ(file.text("/provenance/" + key), text);
   EXPECT_EQ(file.text_of("/", "grainvdb_version"), "1.2.3");
+  EXPECT_EQ(file.text_of("/", "averaging"), "1 output time of 3 frames\n");
   EXPECT_FALSE(file.text_of("/", "title").empty());
 }
 

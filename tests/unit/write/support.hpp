@@ -174,7 +174,10 @@ inline std::unique_ptr<FieldSink> make_sink(const std::string& name, const std::
 }
 
 inline Provenance some_provenance() {
-  return {{"version", "1.2.3"}, {"pipeline", "voxel: 1\n# Grüße, φ ≤ ½\n"}, {"empty", ""}};
+  return {{"version", "1.2.3"},
+          {"averaging", "1 output time of 3 frames\n"},
+          {"pipeline", "voxel: 1\n# Grüße, φ ≤ ½\n"},
+          {"empty", ""}};
 }
 
 }  // namespace grainvdb::testing
