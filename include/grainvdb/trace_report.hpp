@@ -22,6 +22,8 @@ struct TraceReport {
   std::size_t above_gradient_limit = 0;     ///< of these moves
   double largest_courant = 0;               ///< Co = |u|Δt/h
   double largest_gradient_number = 0;       ///< K = |∇u|Δt
+  std::size_t nearby_passes = 0;            ///< over the frames, that splatted only what tracers may come to
+  double nearby_share = 0;                  ///< of the particles that the last of these splatted
   std::vector<std::string> files;           ///< written
 
   /// Whether histories mean something: always through the mean; through frames when Co ≤ courant_limit and K ≤

@@ -35,6 +35,11 @@ struct TraceSpec {
   };
   enum class Scheme : std::uint8_t { rk4, adaptive };
   enum class Direction : std::uint8_t { forward, backward };
+  enum class Neighbourhood : std::uint8_t {
+    automatic,  ///< where that is expected to be cheaper
+    always,     ///< only the leaves that tracers may come to are splatted
+    never       ///< whole grids
+  };
 
   SeedSpec seeds;
   Through through = Through::mean;
@@ -50,6 +55,7 @@ struct TraceSpec {
   OnUndefined on_undefined = OnUndefined::stop;
   std::int64_t every = 1;  ///< steps, or output times, from sample to sample
   std::vector<std::string> formats;
+  Neighbourhood neighbourhood = Neighbourhood::automatic;  ///< has no meaning where fields are written, or for a region
 };
 
 }  // namespace grainvdb

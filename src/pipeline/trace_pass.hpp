@@ -2,6 +2,7 @@
 /// How the tracers of a pipeline get their output times: along with the fields that are written, or in a pass of their
 /// own.
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "pipeline/stopwatch.hpp"
@@ -20,17 +21,23 @@ class TracePass {
     clock_.time("trace", [&] { run_.take(output); });
   }
 
-  /// Computes the output times in the order that the tracers want.
+  /// Computes the output times in the order that the tracers want: around the tracers alone, where the pipeline and the
+  /// cost say so.
   RunReport compute(const std::function<void(const Progress&)>& progress);
 
   /// Puts the histories under their names and adds to the report.
   void commit(RunReport& report);
 
  private:
+  using Show = std::function<void(const Progress&)>;
+  RunReport compute_backward(const Show& progress);
+  std::optional<RunReport> compute_nearby(const Show& progress);
+
   const Pipeline& pipeline_;
   const Plan& plan_;
   FrameSource& source_;
   bool backward_;  ///< through frames
+  Lattice lattice_;
   std::vector<std::size_t> wanted_;
   TraceRun run_;
   Stopwatch clock_;

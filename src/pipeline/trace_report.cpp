@@ -58,6 +58,11 @@ std::vector<std::string> describe(const TraceReport& report) {
   lines.push_back("Co = |u| dt/h at most " + short_number(report.largest_courant) + ", K = |grad u| dt at most " +
                   short_number(report.largest_gradient_number) +
                   (report.through_frames ? " between output times" : " of a step"));
+  if (report.nearby_passes > 0)
+    lines.push_back("splatted around the tracers alone, in " +
+                    (report.nearby_passes > 1 ? std::to_string(report.nearby_passes) + " passes" : "1 pass") +
+                    " over the frames, the last of them " + short_number(100 * report.nearby_share) +
+                    " % of the particles");
   if (!report.is_meaningful()) lines.push_back(trace_warning(report));
   return lines;
 }

@@ -32,6 +32,18 @@ std::size_t first_frame(const Pipeline& pipeline, std::span<const std::size_t> w
   return frames[(frames.size() - 1) / 2];
 }
 
+double largest_speed(const SparseField& velocity) {
+  double largest = 0;  // squared
+  const Topology& topology = *velocity.topology();
+  for (std::size_t l = 0; l < topology.leaf_count(); ++l)
+    topology.mask(l).for_each([&](int v) {
+      double sum = 0;
+      for (int c = 0; c < 3; ++c) sum += std::pow(static_cast<double>(velocity.leaf(l, c)[v]), 2);
+      if (sum > largest) largest = sum;  // not so for NaN
+    });
+  return std::sqrt(largest);
+}
+
 double largest(double so_far, const std::vector<double>& values) {
   for (const double v : values)
     if (v > so_far) so_far = v;  // not so for NaN
@@ -74,6 +86,8 @@ void TraceRun::take_mean(const OutputFields& output) {
   tracers_.emplace(seeds_, box_, flow, 0.0, settings());
   start(output);
   const double duration = spec_.duration.value_or(last_time_ - first_time_);
+  end_time_ = duration;
+  fastest_ = neighbourhood_ != nullptr ? largest_speed(output.fields.at("velocity")) : 0;
   const double dt = spec_.dt.value_or(duration / static_cast<double>(spec_.steps.value_or(1)));
   const double steps = std::max(1.0, std::ceil(duration / dt * (1 - 1e-9)));
   if (steps > 1e9)
@@ -93,7 +107,10 @@ void TraceRun::take_frame(const OutputFields& output) {
   // Where frames were left out there may be nothing, or nothing new: tracers go on to the next output time.
   if (output.time.frame_count == 0 || (previous_ && !(time > previous_time_))) return;
   std::shared_ptr<const FlowGrid> now = flow_grid(output);
+  const double fastest = neighbourhood_ != nullptr ? largest_speed(output.fields.at("velocity")) : 0;
+  fastest_ = std::max(std::exchange(fastest_now_, fastest), fastest);
   if (!previous_) {
+    end_time_ = backward() ? last_time_ - first_time_ : last_time_;
     tracers_.emplace(seeds_, box_, Flow(now), time, settings());
     start(output);
   } else {
@@ -143,7 +160,52 @@ void TraceRun::start(const OutputFields& output) {
   record(output, report_.through_frames && !backward() ? output.time.last_step : 0);
 }
 
+void TraceRun::stay_in(TraceNeighbourhood& neighbourhood) {
+  neighbourhood_ = &neighbourhood;
+  for (std::size_t i = 0; i < seeds_.size(); ++i) {
+    Vec3 x{};
+    bool inside = true;
+    for (std::size_t a = 0; a < 3; ++a) {
+      x[a] = seeds_.position[a][i];
+      inside = inside && (box_.periodic[a] || (x[a] >= box_.lo[a] && x[a] <= box_.hi[a]));
+    }
+    if (inside) neighbourhood.add(x, leaf_edge);
+  }
+}
+
+/// A step goes no further than the greatest speed takes it, at any of its stages; splines may overshoot by half, and
+/// voxels up to two away are sampled.
+void TraceRun::keep_near(const Flow& flow, double until) {
+  const TracerState& state = tracers_->state();
+  const double overshoot = spec_.interpolation == Interpolation::tricubic ? 2 : 1;
+  const double reach = 2 + overshoot * fastest_ * (until - tracers_->time()) / lattice_.voxel();
+  const auto place = [&](std::size_t i) {
+    return Vec3{state.position[0][i], state.position[1][i], state.position[2][i]};
+  };
+  bool all = true;
+  for (std::size_t i = 0; i < tracers_->size() && all; ++i)
+    all = state.stop[i] != TracerStop::moving || neighbourhood_->holds(place(i), reach);
+  if (all) return;
+  if (reach > TraceNeighbourhood::widest) throw LeftNeighbourhood{.grew = false};
+  const double rest = end_time_ - tracers_->time();
+  for (std::size_t i = 0; i < tracers_->size(); ++i) {
+    if (state.stop[i] != TracerStop::moving) continue;
+    neighbourhood_->add(place(i), reach);
+    if (const auto value = flow.first().at(place(i)))
+      neighbourhood_->add_way(place(i),
+                              {rest * value->velocity[0], rest * value->velocity[1], rest * value->velocity[2]});
+  }
+  neighbourhood_->end_growth();
+  throw LeftNeighbourhood{.grew = true};
+}
+
+void TraceRun::found_nearby(std::size_t passes, double share) {
+  report_.nearby_passes = passes;
+  report_.nearby_share = share;
+}
+
 void TraceRun::move(const Flow& flow, double until) {
+  if (neighbourhood_ != nullptr) keep_near(flow, until);
   const TracerState& state = tracers_->state();
   report_.moves += static_cast<std::size_t>(std::count(state.stop.begin(), state.stop.end(), TracerStop::moving));
   const AdvanceReport done = tracers_->advance(flow, until);

@@ -14,6 +14,7 @@
 #include "grainvdb/trace_report.hpp"
 #include "grainvdb/tracer_recorder.hpp"
 #include "grainvdb/tracer_sink.hpp"
+#include "pipeline/trace_neighbourhood.hpp"
 
 namespace grainvdb {
 
@@ -28,6 +29,10 @@ class TraceRun {
            const Sinks& sinks);
   ~TraceRun();
 
+  /// From here on, tracers must stay where fields are known: before they could leave the neighbourhood, it grows along
+  /// the ways that they are about to take, and LeftNeighbourhood is thrown. It must outlive the run.
+  void stay_in(TraceNeighbourhood& neighbourhood);
+
   /// Moves the tracers on to the next output time, or through the mean, and writes samples. Output times come in the
   /// order of the trace: backwards, the latest first. Throws ConfigError when no seed lies in the material.
   void take(const OutputFields& output);
@@ -37,11 +42,14 @@ class TraceRun {
   void commit(Provenance provenance);
 
   const TraceReport& report() const { return report_; }
+  /// Says that the fields were computed around the tracers alone.
+  void found_nearby(std::size_t passes, double share);
 
  private:
   std::shared_ptr<const FlowGrid> flow_grid(const OutputFields& output) const;
   void start(const OutputFields& output);
   void move(const Flow& flow, double until);
+  void keep_near(const Flow& flow, double until);
   void record(const OutputFields& output, std::int64_t step);
   void take_mean(const OutputFields& output);
   void take_frame(const OutputFields& output);
@@ -61,6 +69,9 @@ class TraceRun {
   std::size_t outputs_;            ///< that are expected
   std::size_t taken_ = 0;
   double previous_time_ = 0;
+  double end_time_ = 0;                          ///< of the tracers
+  double fastest_ = 0, fastest_now_ = 0;         ///< speed in the flow, and at the last output time
+  TraceNeighbourhood* neighbourhood_ = nullptr;  ///< none: fields are known everywhere
   std::shared_ptr<const FlowGrid> previous_;
   std::optional<Tracers> tracers_;
   std::optional<TracerRecorder> recorder_;

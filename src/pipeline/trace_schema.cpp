@@ -150,6 +150,13 @@ void add_record(Schema& schema, const StageRegistry& registry) {
   });
   format.default_value = std::vector<std::string>{"h5md"};
   schema.keys.push_back(format);
+  using Neighbourhood = TraceSpec::Neighbourhood;
+  schema.keys.push_back(choice_key<Neighbourhood>(
+      "neighbourhood",
+      "Whether only what tracers may come to is splatted, in two passes or more over the frames, where neither fields "
+      "are written nor a region is given: auto goes by cost.",
+      {{"auto", Neighbourhood::automatic}, {"always", Neighbourhood::always}, {"never", Neighbourhood::never}},
+      &TraceSpec::neighbourhood));
 }
 
 void check_seeds(const Pipeline& p) {
@@ -216,6 +223,10 @@ void check_trace(const Pipeline& p) {
   if (!mean && trace.direction == TraceSpec::Direction::backward && p.input.on_error != OnError::error)
     refuse("trace.direction", "frames that may be left out cannot be followed back in time",
            "input.on_error: error, or trace.direction: forward", "");
+  if (!mean && trace.direction == TraceSpec::Direction::backward &&
+      trace.neighbourhood == TraceSpec::Neighbourhood::always)
+    refuse("trace.neighbourhood", "tracers that go back through frames need whole grids",
+           "trace.neighbourhood: auto or never", "");
   if (mean && p.window != 0)
     refuse("average.window", "tracers through the mean need one mean of all frames",
            "average.window: all, or trace.through: frames", "");

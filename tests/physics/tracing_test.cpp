@@ -23,6 +23,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr int sites = 8;
+constexpr int many_sites = 32;  // 8 leaves along each axis
 /// Fields are floats whose sums are exact to 1e-5 of their terms.
 constexpr double exact = 1e-5;
 
@@ -310,6 +311,7 @@ TEST(TraceThroughFrames, GoesOnOverFramesThatWereLeftOut) {
 TEST(Trace, ComputesNothingThatTheTracersDoNotNeed) {
   Pipeline p = through_mean({{1, 1, 1}}, 1, 0.5);
   p.trace->strain = false;
+  p.trace->neighbourhood = TraceSpec::Neighbourhood::never;  // whose cost takes a look at the first frame
   MemorySource source(frames_of(uniform, {0, 1}));
   const Histories h = trace(p, source);
   EXPECT_EQ(h.report.channels, 4U);  // Σ V W and Σ V v W
@@ -332,6 +334,60 @@ TEST(Trace, GivesTheSameAlongWithFieldsAndAlone) {
     EXPECT_EQ(along.fields.times[0].time.time, 0);
     EXPECT_EQ(alone.fields.times.size(), 0U);
   }
+}
+
+/// A flow that turns and crosses the boundaries of a box many leaves wide.
+std::vector<Frame> wide_frames() {
+  const double k = 2 * M_PI / many_sites;
+  std::vector<Frame> frames;
+  for (int t = 0; t < 4; ++t) {
+    frames.push_back(cubic_packing(many_sites, true, [&](const Vec3& x) {
+      return Vec3{0.6 + 0.1 * t, 0.3 * std::sin(k * x[0]), 0.2 * std::cos(k * x[1])};
+    }));
+    frames.back().time = t;
+    frames.back().step = t;
+  }
+  return frames;
+}
+
+TEST(TraceNeighbourhood, GivesTheSameBytesAsWholeGridsAndSplatsLess) {
+  using Neighbourhood = TraceSpec::Neighbourhood;
+  const auto frames = wide_frames();
+  const auto both = [&](Pipeline p) {
+    p.trace->record = {"phi", "shear_rate"};
+    p.trace->neighbourhood = Neighbourhood::never;
+    const Histories whole = trace(p, frames);
+    p.trace->neighbourhood = Neighbourhood::always;
+    const Histories nearby = trace(p, frames);
+    EXPECT_TRUE(same_histories(whole, nearby));
+    EXPECT_LT(nearby.report.summed_leaves, whole.report.summed_leaves);
+    EXPECT_EQ(whole.report.trace->nearby_passes, 0U);
+    EXPECT_LT(nearby.report.trace->nearby_share, 0.9);
+    EXPECT_THAT(nearby.provenance_text("trace"), HasSubstr("splatted around the tracers alone, in "));
+    return nearby.report.trace->nearby_passes;
+  };
+  // 30 lengths, once around the box and further: longer than the first neighbourhood, and than the first way.
+  EXPECT_GT(both(through_mean({{3, 12, 12}}, 40, 0.25)), 1U);
+  EXPECT_EQ(both(through_mean({{3, 12, 12}, {4, 12, 12}}, 1, 0.25)), 1U);  // stays near
+  EXPECT_GE(both(through_frames({{3, 12, 12}})), 2U);
+  Pipeline p = through_mean({{22, 2, 23}}, 8, 0.25);
+  p.trace->interpolation = Interpolation::tricubic;
+  p.trace->direction = TraceSpec::Direction::backward;
+  p.trace->scheme = TraceSpec::Scheme::adaptive;
+  p.trace->tolerance = 1e-4;
+  both(p);
+}
+
+TEST(TraceNeighbourhood, IsChosenByCost) {
+  const auto frames = wide_frames();
+  Pipeline p = through_mean({{3, 12, 12}}, 1, 0.25);
+  p.trace->strain = false;
+  EXPECT_EQ(trace(p, frames).report.trace->nearby_passes, 1U);  // c/h = 4: 268 values, and a third of the box
+  p.trace->seeds.points = {{3, 12, 12}, {12, 12, 3}, {20, 12, 20}};
+  EXPECT_EQ(trace(p, frames).report.trace->nearby_passes, 0U);
+  p.trace->seeds.points = {{3, 12, 12}};
+  p.fields = {"phi"};
+  EXPECT_EQ(trace(p, frames).report.trace->nearby_passes, 0U);  // whole grids are wanted anyway
 }
 
 TEST(TraceSeeds, LieOnAGridOverTheBox) {

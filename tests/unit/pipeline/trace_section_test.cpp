@@ -42,6 +42,7 @@ TEST(TraceSection, HasDefaults) {
   EXPECT_EQ(t.scheme, TraceSpec::Scheme::rk4);
   EXPECT_EQ(t.interpolation, Interpolation::trilinear);
   EXPECT_EQ(t.direction, TraceSpec::Direction::forward);
+  EXPECT_EQ(t.neighbourhood, TraceSpec::Neighbourhood::automatic);
   EXPECT_EQ(t.on_undefined, OnUndefined::stop);
   EXPECT_EQ(t.steps, 10);
   EXPECT_TRUE(t.strain);
@@ -65,6 +66,7 @@ TEST(TraceSection, ReadsEveryKeyAndResolvesToTheSame) {
   on_undefined: carry_on
   every: 3
   formats: [h5md, lammps]
+  neighbourhood: never
 )");
   const Pipeline p = load(text);
   const auto check = [](const Pipeline& q) {
@@ -83,6 +85,7 @@ TEST(TraceSection, ReadsEveryKeyAndResolvesToTheSame) {
     EXPECT_EQ(t.on_undefined, OnUndefined::carry_on);
     EXPECT_EQ(t.every, 3);
     EXPECT_THAT(t.formats, ElementsAre("h5md", "lammps"));
+    EXPECT_EQ(t.neighbourhood, TraceSpec::Neighbourhood::never);
     EXPECT_THAT(computed_fields(q), ElementsAre("phi", "velocity", "temperature"));
   };
   check(p);
