@@ -7,10 +7,10 @@
 namespace grainvdb::test {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(Run, WritesTheFieldsAndSaysWhere) {
   const Folder folder;

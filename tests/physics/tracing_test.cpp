@@ -353,7 +353,8 @@ std::vector<Frame> wide_frames() {
 TEST(TraceNeighbourhood, GivesTheSameBytesAsWholeGridsAndSplatsLess) {
   using Neighbourhood = TraceSpec::Neighbourhood;
   const auto frames = wide_frames();
-  const auto both = [&](Pipeline p) {
+  // In a box of three leaves along each side, what is needed of a long way may lie within reach of every particle.
+  const auto both = [&](Pipeline p, double most_particles) {
     p.trace->record = {"phi", "shear_rate"};
     p.trace->neighbourhood = Neighbourhood::never;
     const Histories whole = trace(p, frames);
@@ -362,20 +363,20 @@ TEST(TraceNeighbourhood, GivesTheSameBytesAsWholeGridsAndSplatsLess) {
     EXPECT_TRUE(same_histories(whole, nearby));
     EXPECT_LT(nearby.report.summed_leaves, whole.report.summed_leaves);
     EXPECT_EQ(whole.report.trace->nearby_passes, 0U);
-    EXPECT_LT(nearby.report.trace->nearby_share, 0.9);
+    EXPECT_LE(nearby.report.trace->nearby_share, most_particles);
     EXPECT_THAT(nearby.provenance_text("trace"), HasSubstr("splatted around the tracers alone, in "));
     return nearby.report.trace->nearby_passes;
   };
   // 30 lengths, once around the box and further: longer than the first neighbourhood, and than the first way.
-  EXPECT_GT(both(through_mean({{3, 12, 12}}, 40, 0.25)), 1U);
-  EXPECT_EQ(both(through_mean({{3, 12, 12}, {4, 12, 12}}, 1, 0.25)), 1U);  // stays near
-  EXPECT_GE(both(through_frames({{3, 12, 12}})), 2U);
+  EXPECT_GT(both(through_mean({{3, 12, 12}}, 40, 0.25), 1), 1U);
+  EXPECT_EQ(both(through_mean({{3, 12, 12}, {4, 12, 12}}, 1, 0.25), 0.9), 1U);  // stays near
+  EXPECT_GE(both(through_frames({{3, 12, 12}}), 0.9), 2U);
   Pipeline p = through_mean({{22, 2, 23}}, 8, 0.25);
   p.trace->interpolation = Interpolation::tricubic;
   p.trace->direction = TraceSpec::Direction::backward;
   p.trace->scheme = TraceSpec::Scheme::adaptive;
   p.trace->tolerance = 1e-4;
-  both(p);
+  both(p, 0.9);
 }
 
 TEST(TraceNeighbourhood, IsChosenByCost) {
