@@ -10,7 +10,8 @@
 
 namespace grainvdb {
 
-using OptionValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>>;
+using OptionValue =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>, std::vector<double>>;
 
 /// The declaration of one option.
 struct OptionInfo {

@@ -77,6 +77,7 @@ struct Pipeline {
   StageSettings stages;              ///< option values of every stage, defaults filled in
   std::vector<std::string> formats;  ///< of the output: hdf5, vdb
   std::optional<TraceSpec> trace;    ///< histories of tracers, where they are wanted
+  std::map<std::string, OptionValues> measure;  ///< the wanted measurements by name, with their options
   Limits limits;
   std::string resolved;                   ///< this pipeline as YAML with all defaults, for the provenance
   std::map<std::string, Location> where;  ///< where each key stands, e.g. "kernel.cutoff"; overrides stand at "--set"

@@ -16,6 +16,7 @@
 #include "grainvdb/plan.hpp"
 #include "grainvdb/region.hpp"
 #include "grainvdb/sparse_field.hpp"
+#include "grainvdb/table.hpp"
 #include "grainvdb/trace_report.hpp"
 #include "grainvdb/tracer_sink.hpp"
 
@@ -53,6 +54,7 @@ struct RunReport {
   std::vector<std::string> walls;                           ///< where they are and what is done about them, in words
   std::vector<std::string> files;                           ///< written, those of the tracers apart
   std::optional<TraceReport> trace;                         ///< where there were tracers
+  std::vector<Table> tables;                                ///< of the measurements
   ReadCounters read;
 };
 

@@ -39,7 +39,7 @@ Plan plan_for(const Stage& stage) {
 }
 
 Json describe_option(const OptionInfo& option) {
-  static constexpr const char* types[] = {"boolean", "integer", "number", "text", "list of texts"};
+  static constexpr const char* types[] = {"boolean", "integer", "number", "text", "list of texts", "list of numbers"};
   Json json{{"name", option.name},
             {"type", types[option.default_value.index()]},
             {"default", std::visit([](const auto& v) { return Json(v); }, option.default_value)},

@@ -2,9 +2,11 @@
 #include <string>
 #include <vector>
 
+#include "grainvdb/measurement.hpp"
 #include "grainvdb/pipeline.hpp"
 #include "pipeline/half_step_keys.hpp"
 #include "pipeline/load_config.hpp"
+#include "pipeline/measure_keys.hpp"
 #include "pipeline/resolved.hpp"
 #include "pipeline/scale_keys.hpp"
 #include "pipeline/schema.hpp"
@@ -40,13 +42,14 @@ void check_until(const Pipeline& p) {
 
 // What no single key can tell.
 void check_together(const Pipeline& p) {
-  if (p.fields.empty() && !p.trace)
+  if (p.fields.empty() && !p.trace && p.measure.empty())
     throw ConfigError({Location{p.file},
                        "the section 'output' is missing",
                        {},
-                       "output, with the fields to write, or trace, with the seeds of tracers",
+                       "output, with the fields to write, trace, with the seeds of tracers, or measure",
                        {}});
   check_trace(p);
+  check_measure(p);
   const auto& contacts = p.input.contacts;
   if (!contacts.compute.empty() && !contacts.columns.empty())
     throw ConfigError({p.location("input.contacts"),
@@ -88,6 +91,8 @@ std::vector<std::string> computed_fields(const Pipeline& pipeline) {
   const auto need = [&](const std::string& name) {
     if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
   };
+  for (const auto& [name, options] : pipeline.measure)
+    for (const std::string& field : find_measurement(name)->needs(options).fields) need(field);
   if (!pipeline.trace) return all;
   need("velocity");
   if (pipeline.trace->strain) need("shear_rate");

@@ -13,6 +13,8 @@
 #include "pipeline/frame_range.hpp"
 #include "pipeline/half_step_keys.hpp"
 #include "pipeline/key_builders.hpp"
+#include "pipeline/measure_keys.hpp"
+#include "pipeline/option_keys.hpp"
 #include "pipeline/scale_keys.hpp"
 #include "pipeline/text.hpp"
 #include "pipeline/trace_schema.hpp"
@@ -185,7 +187,7 @@ void add_method(Schema& schema) {
 }
 
 void add_output(Schema& schema, const StageRegistry& registry) {
-  schema.sections.push_back({"output", "What to write; needed where there is no trace.", false, true});
+  schema.sections.push_back({"output", "What to write; needed where nothing is traced or measured.", false, true});
   std::vector<std::string> names;
   for (const Stage& stage : registry.stages()) names.push_back(stage.name);
   auto fields = texts_key("output", "fields", "Fields, in the order in which they are written.", names,
@@ -200,46 +202,13 @@ void add_output(Schema& schema, const StageRegistry& registry) {
   schema.keys.push_back(format);
 }
 
-ValueType type_of(const OptionValue& value) {
-  static constexpr ValueType types[] = {ValueType::boolean, ValueType::integer, ValueType::number, ValueType::text,
-                                        ValueType::texts};
-  return types[value.index()];
-}
-
-KeyInfo option_key(const std::string& stage, const OptionInfo& option) {
-  KeyInfo key{"stages." + stage, option.name, type_of(option.default_value), option.help};
-  key.default_value = std::visit([](const auto& v) { return ConfigValue(v); }, option.default_value);
-  key.choices = option.choices;
-  key.minimum = option.minimum;
-  key.maximum = option.maximum;
-  key.fewest = 0;
-  key.apply = [stage, name = option.name, type = option.default_value.index()](Pipeline& p, const ConfigValue& v) {
-    OptionValue& to = p.stages[stage][name];
-    switch (type) {
-      case 0:
-        to = std::get<bool>(v);
-        break;
-      case 1:
-        to = std::get<std::int64_t>(v);
-        break;
-      case 2:
-        to = std::get<double>(v);
-        break;
-      case 3:
-        to = std::get<std::string>(v);
-        break;
-      default:
-        to = std::get<std::vector<std::string>>(v);
-    }
-  };
-  return key;
-}
-
 void add_stages(Schema& schema, const StageRegistry& registry) {
   schema.sections.push_back({"stages", "Options of stages."});
   for (const Stage& stage : registry.stages()) {
     schema.sections.push_back({"stages." + stage.name, "Options of " + stage.name + ": " + stage.description});
-    for (const OptionInfo& option : stage.options) schema.keys.push_back(option_key(stage.name, option));
+    for (const OptionInfo& option : stage.options)
+      schema.keys.push_back(option_key("stages." + stage.name, option,
+                                       [name = stage.name](Pipeline& p) -> OptionValues& { return p.stages[name]; }));
   }
 }
 
@@ -370,6 +339,7 @@ Schema make_schema(const StageRegistry& registry) {
   add_output(schema, registry);
   add_trace(schema, registry);
   add_stages(schema, registry);
+  add_measure(schema);
   add_limits(schema);
   return schema;
 }

@@ -1,0 +1,7 @@
+#pragma once
+/// The measurements that come with the library, one function a family.
+#include <vector>
+
+#include "grainvdb/measurement.hpp"
+
+namespace grainvdb {}  // namespace grainvdb

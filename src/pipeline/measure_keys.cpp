@@ -1,0 +1,32 @@
+#include "pipeline/measure_keys.hpp"
+
+#include "grainvdb/measurement.hpp"
+#include "pipeline/option_keys.hpp"
+
+namespace grainvdb {
+
+void add_measure(Schema& schema) {
+  schema.sections.push_back({"measure", "Tables to make of the frames and fields; a section for each.", false, true});
+  for (const MeasurementInfo& measurement : measurement_registry()) {
+    const std::string section = "measure." + measurement.name;
+    schema.sections.push_back({section, "Measure: " + measurement.description, false, true});
+    for (const OptionInfo& option : measurement.options)
+      schema.keys.push_back(option_key(
+          section, option, [name = measurement.name](Pipeline& p) -> OptionValues& { return p.measure[name]; }));
+  }
+}
+
+void check_measure(const Pipeline& pipeline) {
+  for (const auto& [name, options] : pipeline.measure) {
+    const MeasurementInfo& measurement = *find_measurement(name);
+    if (!measurement.conflict) continue;
+    if (const auto conflict = measurement.conflict(options))
+      throw ConfigError({pipeline.location("measure." + name + '.' + conflict->option),
+                         "measure." + name + '.' + conflict->option + " does not go with other options",
+                         conflict->found,
+                         conflict->expected,
+                         {}});
+  }
+}
+
+}  // namespace grainvdb
