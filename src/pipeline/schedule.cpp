@@ -110,8 +110,8 @@ std::vector<std::size_t> frames_of(const WindowSchedule& schedule, std::span<con
 
 std::vector<std::vector<std::size_t>> windows_of(const Pipeline& pipeline, std::span<const std::size_t> wanted) {
   std::vector<std::vector<std::size_t>> windows;
-  const Plan whole_windows;  // without blocks
-  for (const Window& window : schedule_windows(time_windows(pipeline, whole_windows), wanted.size()).windows) {
+  const TimeWindows without_blocks{.length = pipeline.window, .step = pipeline.window_step};
+  for (const Window& window : schedule_windows(without_blocks, wanted.size()).windows) {
     const auto frames = wanted.subspan(window.frames.first, window.frames.count);
     windows.emplace_back(frames.begin(), frames.end());
   }
