@@ -21,7 +21,8 @@ std::vector<Pipeline> at_scales(const Pipeline& pipeline);
 
 /// As run_pipeline for each of the runs, with the same results, to the last bit. They go side by side: none is more
 /// than limits.frames_in_flight of the first ahead of another, and so many more frames are in memory. What fails in one
-/// ends all, and is thrown. The pipelines must differ in voxel and cutoff alone. Each report has what was read for all.
+/// ends all, and is thrown. The pipelines must differ in voxel and cutoff alone. Each report has what was read for all
+/// and the memory of all.
 std::vector<RunReport> run_scales(std::vector<ScaleRun>& runs, FrameSource& source,
                                   const std::function<void(const Progress&)>& progress = {});
 

@@ -161,9 +161,8 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
     text += "standard errors: from sums over " + (pipeline.until ? "up to " : std::string()) +
             counted(pipeline.until ? 2 * pipeline.blocks : pipeline.blocks, "block") + " of frames; derived again " +
             "without each: " + joined(names_of(plan.errors.by_block), "none") + '\n';
-  text += "peak memory: " + to_string(memory_model(plan, pipeline)) +
-          "\n  for P particles and C contacts a frame with i periodic images each, and V voxels in the leaves that are "
-          "summed\n";
+  const MemoryModel memory = memory_model(plan, pipeline);
+  text += "peak memory: " + to_string(memory) + "\n  " + symbols(memory) + '\n';
   text += "written: " + joined(pipeline.fields, "nothing") + " as " + joined(pipeline.formats, "nothing") + '\n';
   if (pipeline.trace) text += trace_text(*pipeline.trace);
   text += "not read: " + joined(columns_not_read(plan), "nothing is left out") + '\n';

@@ -24,19 +24,27 @@ constexpr double grid_root = 0.3e6;
 // A leaf of 2 kB of values carries masks, an origin and a pointer.
 constexpr double float_in_grid = 4.25;
 
+// Tracers: what seeds, Tracers and TracerRecorder state, then ids, stop times and a column of places on their way into
+// tracers.h5.
+constexpr double tracer = (8 + 3 * 8) + 118 + 93 + (8 + 8 + 3 * 8);
+
 constexpr double bucket_entry = 4 + 3 * 8 + 3 * 4;  // point, index, local (Buckets)
 constexpr double half_branch = 9 * 8;               // start, arm, force
 constexpr double branch_plan = 8 + 4;               // how it is integrated, and which one a piece is of
 
+bool has_contact_point(const ContactSpec& spec) {
+  return spec.columns.contains("point") ||
+         std::find(spec.compute.begin(), spec.compute.end(), "contactPoint") != spec.compute.end();
+}
+
 /// Pieces of a contact in the buckets. Its halves make one where its point is exact, and not just as good as a dump's
 /// six digits.
 double pieces(const Pipeline& pipeline, const SplatGroup& group) {
-  const ContactSpec& spec = pipeline.input.contacts;
-  const bool has_point = spec.columns.contains("point") ||
-                         std::find(spec.compute.begin(), spec.compute.end(), "contactPoint") != spec.compute.end();
   const bool joins = group.moments[0]->line_integral == LineIntegral::adaptive();
-  return has_point || !joins ? 2 : 1;
+  return has_contact_point(pipeline.input.contacts) || !joins ? 2 : 1;
 }
+
+constexpr double force_bytes = 3 * 8;
 
 double column_bytes(ColumnSet columns) {
   double bytes = 8 + 3 * 8;  // id, position
@@ -45,7 +53,13 @@ double column_bytes(ColumnSet columns) {
   if (columns.has(Column::radius)) bytes += 8;
   if (columns.has(Column::mass)) bytes += 8;
   if (columns.has(Column::type)) bytes += 4;
+  if (columns.has(Column::force)) bytes += force_bytes;
   return bytes;
+}
+
+/// Ids, force and, where dumps have it, the contact point.
+double contact_bytes(const Pipeline& pipeline) {
+  return 2 * 8 + 3 * 8 + (has_contact_point(pipeline.input.contacts) ? 3 * 8 : 0);
 }
 
 void take_larger(double& a, double b) {
@@ -55,8 +69,10 @@ void take_larger(double& a, double b) {
 /// What one sweep keeps of every frame in flight, and of the one that is splatted.
 void add_sweep(const Plan& plan, const Pipeline& pipeline, std::size_t sweep, MemoryModel& model, double& buffered) {
   const bool reads_all = pipeline.input.on_error == OnError::skip_frame && sweep == 0;
-  double particle = column_bytes(reads_all ? all_columns(plan) : plan.sweeps[sweep].columns);
+  const ColumnSet columns = reads_all ? all_columns(plan) : plan.sweeps[sweep].columns;
+  double particle = column_bytes(columns), particle_values = 0;
   double contact = 0, contact_image = 0, kept = 0;
+  take_larger(model.per_particle_read, particle);
   const SweepGroups groups = group_moments(plan, sweep);
   for (const SweepGroups::Pass& pass : groups.passes) {
     for (const SplatGroup& group : pass.groups) {
@@ -67,13 +83,19 @@ void add_sweep(const Plan& plan, const Pipeline& pipeline, std::size_t sweep, Me
         contact += 2 * (values + branch_plan);
         contact_image += pieces(pipeline, group) * (bucket_entry + 1 + 4.0 * (3 + group.value_count()));
       } else if (ahead) {
-        particle += values;
+        particle_values += values;
       }
     }
     for (const MomentPtr& m : pass.voxelwise)
       if (groups.kept.contains(m->name)) kept += 8.0 * m->channels;
   }
-  if (plan.sweeps[sweep].columns.has(Column::contacts)) contact += 2 * half_branch;
+  if (columns.has(Column::contacts)) {
+    contact += 2 * half_branch;
+    take_larger(model.per_contact_read, contact_bytes(pipeline));
+  }
+  // Forces have corrected the contacts, and are gone, before there are values.
+  if (columns.has(Column::force)) particle -= std::min(force_bytes, particle_values);
+  particle += particle_values;
   take_larger(model.per_particle, particle);
   take_larger(model.per_particle_image, bucket_entry);
   take_larger(model.per_contact, contact);
@@ -116,6 +138,21 @@ double components_written(const Plan& plan, const Pipeline& pipeline) {
   return n;
 }
 
+/// Components that tracers record.
+double components_recorded(const Plan& plan, const TraceSpec& trace) {
+  int n = 0;
+  for (const Stage* stage : plan.stages)
+    if (std::find(trace.record.begin(), trace.record.end(), stage->name) != trace.record.end()) n += stage->components;
+  return n;
+}
+
+/// The copies of the velocity that carry tracers: one through the mean, two between frames.
+double flow_bytes_per_leaf(const TraceSpec& trace) {
+  const double copies = trace.through == TraceSpec::Through::frames ? 2 : 1;
+  const double edge = leaf_edge + (trace.interpolation == Interpolation::trilinear ? 1 : 3);
+  return copies * edge * edge * edge * 4 * sizeof(float);
+}
+
 /// Sums of the window, of its blocks and of what windows share, and what standard errors are computed with.
 double sum_bytes(const Plan& plan, const Pipeline& pipeline) {
   const TimeWindows windows = time_windows(pipeline, plan);
@@ -145,7 +182,12 @@ std::size_t frames_in_flight(const Limits& limits) {
 double MemoryModel::peak(const RunSize& size) const {
   const double frame = size.particles * (per_particle + per_particle_image * size.images) +
                        size.contacts * (per_contact + per_contact_image * size.images);
-  return fixed + static_cast<double>(frames_in_flight) * frame + per_voxel * size.voxels;
+  return fixed + static_cast<double>(frames_in_flight) * frame + per_voxel * size.voxels + per_tracer * size.tracers;
+}
+
+double MemoryModel::more_than_sum(std::size_t runs, double particles, double contacts) const {
+  return static_cast<double>(frames_in_flight) * (particles * per_particle_read + contacts * per_contact_read) -
+         static_cast<double>(runs - 1) * program;
 }
 
 double images_per_particle(const Lattice& lattice, double cutoff) {
@@ -167,9 +209,14 @@ MemoryModel memory_model(const Plan& plan, const Pipeline& pipeline) {
   const double mask = 4.0 * (pipeline.window > 0 ? 2 : 1);
   model.per_voxel =
       sum_bytes(plan, pipeline) + std::max(buffered, float_in_grid * at_hand) + float_in_grid * written + mask;
-  for (double* bytes :
-       {&model.per_particle, &model.per_particle_image, &model.per_contact, &model.per_contact_image, &model.per_voxel})
+  if (pipeline.trace) {
+    model.per_tracer = tracer + 4 * components_recorded(plan, *pipeline.trace);
+    model.per_voxel += flow_bytes_per_leaf(*pipeline.trace) / leaf_size;
+  }
+  for (double* bytes : {&model.per_particle, &model.per_particle_image, &model.per_contact, &model.per_contact_image,
+                        &model.per_voxel, &model.per_tracer, &model.per_particle_read, &model.per_contact_read})
     *bytes *= with_holes;
+  model.program = program;
   model.fixed = program + grid_root * (at_hand + written);
   return model;
 }
@@ -178,7 +225,21 @@ std::string to_string(const MemoryModel& model) {
   std::string frame = per("P", model.per_particle, model.per_particle_image);
   if (model.per_contact > 0) frame += " + " + per("C", model.per_contact, model.per_contact_image);
   return rounded(model.fixed / 1e6) + " MB + " + std::to_string(model.frames_in_flight) + " x [" + frame + "] + " +
-         rounded(model.per_voxel) + " V bytes";
+         rounded(model.per_voxel) + " V" + (model.per_tracer > 0 ? " + " + rounded(model.per_tracer) + " N" : "") +
+         " bytes";
+}
+
+std::string symbols(const MemoryModel& model) {
+  return std::string("for P particles and C contacts a frame with i periodic images each, ") +
+         (model.per_tracer > 0 ? "V voxels in the leaves that are summed, and N tracers"
+                               : "and V voxels in the leaves that are summed");
+}
+
+std::string to_string_of_all(const MemoryModel& model, std::size_t runs) {
+  std::string frame = "P " + rounded(model.per_particle_read);
+  if (model.per_contact_read > 0) frame += " + C " + rounded(model.per_contact_read);
+  return "the sum of all " + std::to_string(runs) + " - " + std::to_string(runs - 1) + " x " +
+         rounded(model.program / 1e6) + " MB + " + std::to_string(model.frames_in_flight) + " x [" + frame + "] bytes";
 }
 
 }  // namespace grainvdb

@@ -111,7 +111,14 @@ std::vector<RunReport> run_scales(std::vector<ScaleRun>& runs, FrameSource& sour
     for (std::size_t n = 0; n < runs.size(); ++n) threads.emplace_back(run, n);
   }
   together.rethrow();
-  for (RunReport& report : reports) report.read = source.counters();
+  const MemoryModel model = memory_model(runs[0].plan, runs[0].pipeline);
+  const auto [particles, contacts] = frames.largest();
+  double memory = model.more_than_sum(runs.size(), particles, contacts);
+  for (const RunReport& report : reports) memory += report.memory;
+  for (RunReport& report : reports) {
+    report.read = source.counters();
+    report.memory = memory;
+  }
   return reports;
 }
 

@@ -31,6 +31,8 @@ Frame SharedFrames::read(std::size_t user, std::size_t k, ColumnSet wanted) {
       fault = std::current_exception();
     }
     lock.lock();
+    most_particles_ = std::max(most_particles_, content.particles.size());
+    most_contacts_ = std::max(most_contacts_, content.contacts.size());
     slot.content = std::move(content);
     slot.fault = fault;
     slot.ready = true;
@@ -63,6 +65,11 @@ void SharedFrames::leave(std::size_t user) {
   --users_;
   for (std::size_t n = std::max(next_[user], first_); n < first_ + slots_.size(); ++n) --slots_[n - first_].users_left;
   drop_used();
+}
+
+std::pair<double, double> SharedFrames::largest() {
+  const std::lock_guard lock(turn_);
+  return {static_cast<double>(most_particles_), static_cast<double>(most_contacts_)};
 }
 
 void SharedFrames::abandon() {

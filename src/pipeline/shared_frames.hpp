@@ -5,6 +5,7 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <utility>
 #include <vector>
 
 #include "grainvdb/frame_source.hpp"
@@ -23,6 +24,8 @@ class SharedFrames {
   /// Ends all waiting: further calls of read throw Abandoned.
   void abandon();
   struct Abandoned {};
+  /// Particles and contacts of the largest frame so far, as it was read.
+  std::pair<double, double> largest();
 
   /// Calls f(source) while nobody else uses it.
   template <class F>
@@ -53,6 +56,7 @@ class SharedFrames {
   bool abandoned_ = false;
   std::size_t users_;
   std::vector<std::size_t> next_;  // slot of each user
+  std::size_t most_particles_ = 0, most_contacts_ = 0;
 };
 
 }  // namespace grainvdb

@@ -1,6 +1,7 @@
 // Several scales in one pass give what each gives by itself.
 #include "grainvdb/scales.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "grainvdb/error.hpp"
+#include "grainvdb/memory_model.hpp"
 #include "stream/same_fields.hpp"
 #include "support/memory_source.hpp"
 #include "support/run_in_memory.hpp"
@@ -77,6 +79,25 @@ TEST_F(Scales, GiveWhatEachGivesAndReadFramesOnce) {
       EXPECT_EQ(reports[n].active_voxels, expected.report.active_voxels);
     }
   }
+}
+
+TEST_F(Scales, StateTheMemoryOfAll) {
+  pipeline_.limits.frames_in_flight = 2;
+  std::vector<std::shared_ptr<Record>> records;
+  auto all = runs(records);
+  std::size_t particles = 0, contacts = 0;
+  for (const Frame& frame : frames_) {
+    particles = std::max(particles, frame.particles.size());
+    contacts = std::max(contacts, frame.contacts.size());
+  }
+  double expected = memory_model(all[0].plan, all[0].pipeline)
+                        .more_than_sum(3, static_cast<double>(particles), static_cast<double>(contacts));
+  for (const ScaleRun& one : all) {
+    MemorySource alone(frames_);
+    expected += run(one.pipeline, alone).report.memory;
+  }
+  MemorySource source(frames_);
+  for (const RunReport& report : run_scales(all, source)) EXPECT_DOUBLE_EQ(report.memory, expected);
 }
 
 TEST_F(Scales, LeaveBadFramesOutOfAll) {

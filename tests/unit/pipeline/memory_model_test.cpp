@@ -7,15 +7,20 @@
 namespace grainvdb {
 namespace {
 
-MemoryModel model_of(const std::vector<std::string>& fields, std::size_t window = 0, std::size_t step = 0) {
+Pipeline pipeline_of(const std::vector<std::string>& fields) {
   Pipeline p;
   p.voxel = 1;
   p.cutoff = 3;
   p.fields = fields;
-  p.window = window;
-  p.window_step = step;
   p.limits.frames_in_flight = 3;
   p.stages = StageRegistry::standard().default_settings();
+  return p;
+}
+
+MemoryModel model_of(const std::vector<std::string>& fields, std::size_t window = 0, std::size_t step = 0) {
+  Pipeline p = pipeline_of(fields);
+  p.window = window;
+  p.window_step = step;
   return memory_model(make_plan(p), p);
 }
 
@@ -28,7 +33,8 @@ TEST(MemoryModel, AddsWhatFramesAndVoxelsTake) {
   m.per_contact = 200;
   m.per_contact_image = 20;
   m.per_voxel = 7;
-  EXPECT_DOUBLE_EQ(m.peak({5, 4, 1.5, 11}), 1000 + 3 * (5 * 115 + 4 * 230) + 77);
+  m.per_tracer = 300;
+  EXPECT_DOUBLE_EQ(m.peak({5, 4, 1.5, 11, 2}), 1000 + 3 * (5 * 115 + 4 * 230) + 77 + 600);
 }
 
 TEST(MemoryModel, CountsColumnsSumsAndFields) {
@@ -44,6 +50,51 @@ TEST(MemoryModel, CountsColumnsSumsAndFields) {
 TEST(MemoryModel, KnowsOfSharedPartsOfWindows) {
   const double one = model_of({"phi"}, 8).per_voxel, sliding = model_of({"phi"}, 8, 2).per_voxel;
   EXPECT_GT(sliding - one, 4 * 2 * 8);  // four parts of a sum and a count of samples
+}
+
+// Runs side by side have one program, and the frames that lie between the first and the last of them.
+TEST(MemoryModel, KnowsWhatRunsSideBySideShare) {
+  const MemoryModel m = model_of({"contact_stress"});
+  constexpr double holes = 1.1;
+  EXPECT_DOUBLE_EQ(m.per_particle_read, holes * (8 + 3 * 8 + 8));  // id, place, radius
+  EXPECT_DOUBLE_EQ(m.per_contact_read, holes * (2 * 8 + 3 * 8));   // ids, force
+  EXPECT_DOUBLE_EQ(m.more_than_sum(1, 10, 20), 3 * (10 * m.per_particle_read + 20 * m.per_contact_read));
+  EXPECT_DOUBLE_EQ(m.more_than_sum(3, 10, 20), m.more_than_sum(1, 10, 20) - 2 * m.program);
+  EXPECT_THAT(to_string_of_all(m, 3), ::testing::HasSubstr("the sum of all 3 - 2 x 50 MB + 3 x [P 44 + C 44]"));
+}
+
+TEST(MemoryModel, KnowsOfTracers) {
+  Pipeline p = pipeline_of({"phi", "velocity"});
+  const MemoryModel none = memory_model(make_plan(p), p);
+  EXPECT_EQ(none.per_tracer, 0);
+  EXPECT_THAT(to_string(none), ::testing::Not(::testing::HasSubstr(" N")));
+  p.trace.emplace();
+  p.trace->strain = false;
+  const MemoryModel bare = memory_model(make_plan(p), p);
+  p.trace->record = {"velocity", "phi"};
+  const MemoryModel recording = memory_model(make_plan(p), p);
+  constexpr double holes = 1.1;
+  EXPECT_NEAR(recording.per_tracer - bare.per_tracer, holes * 4 * 4, 1e-9);
+  EXPECT_GT(bare.per_tracer, 118 + 93);
+  EXPECT_NEAR(bare.per_voxel - none.per_voxel, holes * 11.7e3 / 512, 0.1);
+  EXPECT_THAT(to_string(bare), ::testing::HasSubstr(" N bytes"));
+  EXPECT_THAT(symbols(bare), ::testing::HasSubstr("N tracers"));
+  p.trace->through = TraceSpec::Through::frames;
+  p.trace->interpolation = Interpolation::tricubic;
+  p.window = 1;
+  Pipeline untraced = p;
+  untraced.trace.reset();
+  EXPECT_NEAR(memory_model(make_plan(p), p).per_voxel - memory_model(make_plan(untraced), untraced).per_voxel,
+              holes * 2 * 21.3e3 / 512, 0.1);
+}
+
+// The forces on the particles are read, and gone before there are values.
+TEST(MemoryModel, KnowsOfTheForcesThatCorrectContacts) {
+  Pipeline p = pipeline_of({"contact_stress"});
+  p.input.contacts.half_step.emplace();
+  const MemoryModel corrected = memory_model(make_plan(p), p);
+  constexpr double holes = 1.1;
+  EXPECT_NEAR(corrected.per_particle - model_of({"contact_stress"}).per_particle, holes * (3 * 8 + 8), 1e-9);  // mass
 }
 
 }  // namespace
