@@ -4,8 +4,11 @@
 #include <string>
 #include <utility>
 
+#include "grainvdb/memory_model.hpp"
 #include "pipeline/provenance.hpp"
 #include "pipeline/schedule.hpp"
+#include "pipeline/trace_start.hpp"
+#include "pipeline/unless_bad.hpp"
 
 namespace grainvdb {
 namespace {
@@ -28,13 +31,8 @@ Pipeline only(const Pipeline& pipeline, const std::vector<std::size_t>& frames) 
 /// Where the particles are in the first frame that can be read, selected or not; nothing when there is none.
 std::optional<Particles> first_particles(const Pipeline& pipeline, FrameSource& source,
                                          const std::vector<std::size_t>& wanted) {
-  for (const std::size_t k : wanted) {
-    try {
-      return source.read(k, {}).particles;
-    } catch (const InputError&) {
-      if (pipeline.input.on_error == OnError::error) throw;
-    }
-  }
+  for (const std::size_t k : wanted)
+    if (auto frame = read_unless_bad(pipeline.input, source, k, {})) return std::move(frame->particles);
   return std::nullopt;
 }
 
@@ -50,6 +48,7 @@ void add(RunReport& all, const RunReport& more) {
     if (it == all.seconds.end()) it = all.seconds.insert(it, {step, 0});
     it->second += seconds;
   }
+  all.memory = std::max(all.memory, more.memory);
   all.masked = more.masked;
   all.read = more.read;
 }
@@ -64,7 +63,8 @@ TracePass::TracePass(const Pipeline& pipeline, const Plan& plan, FrameSource& so
                 pipeline.trace->direction == TraceSpec::Direction::backward),
       lattice_(checked_lattice(pipeline, plan, source)),
       wanted_(select_frames(pipeline.frames, source.frames().size())),
-      run_(pipeline, source, lattice_, wanted_, sinks) {}
+      seeds_(make_seeds(pipeline, plan, source, wanted_)),
+      run_(pipeline, source, lattice_, wanted_, seeds_, sinks) {}
 
 RunReport TracePass::compute(const Show& progress) {
   if (backward_) return compute_backward(progress);
@@ -94,7 +94,7 @@ std::optional<RunReport> TracePass::compute_nearby(const Show& progress) {
   TraceNeighbourhood neighbourhood(lattice_);
   const TraceRun::Sinks nothing;
   for (std::size_t pass = 1; pass <= most; ++pass) {
-    TraceRun search(pipeline_, source_, lattice_, wanted_, nothing);
+    TraceRun search(pipeline_, source_, lattice_, wanted_, seeds_, nothing);
     search.stay_in(neighbourhood);
     const Region region = neighbourhood.region();
     if (region.empty()) return std::nullopt;  // every seed lies outside the box
@@ -141,6 +141,7 @@ void TracePass::commit(RunReport& report) {
   clock_.time("trace", [&] { run_.commit(provenance_of(pipeline_, plan_, source_, wanted_, report)); });
   report.seconds.insert(report.seconds.end(), clock_.seconds().begin(), clock_.seconds().end());
   report.trace = run_.report();
+  report.memory += memory_model(plan_, pipeline_).per_tracer * static_cast<double>(report.trace->tracers);
 }
 
 }  // namespace grainvdb

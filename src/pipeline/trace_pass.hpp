@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "grainvdb/seeds.hpp"
 #include "pipeline/stopwatch.hpp"
 #include "pipeline/trace_run.hpp"
 
@@ -12,7 +13,8 @@ namespace grainvdb {
 
 class TracePass {
  public:
-  /// Makes the checks of the input. All arguments must outlive the pass. Throws as TraceRun does.
+  /// Makes the checks of the input, and the seeds. All arguments must outlive the pass. Throws ConfigError, InputError,
+  /// IoError or LimitError.
   TracePass(const Pipeline& pipeline, const Plan& plan, FrameSource& source, const TraceRun::Sinks& sinks);
 
   /// Whether the output times are wanted in the order of time, each whole.
@@ -39,6 +41,7 @@ class TracePass {
   bool backward_;  ///< through frames
   Lattice lattice_;
   std::vector<std::size_t> wanted_;
+  TracerSeeds seeds_;
   TraceRun run_;
   Stopwatch clock_;
 };

@@ -23,15 +23,6 @@ SparseField negated(const SparseField& field, const Lattice& lattice) {
   return result;
 }
 
-/// The frame nearest to the output time at which tracers start.
-std::size_t first_frame(const Pipeline& pipeline, std::span<const std::size_t> wanted) {
-  const TraceSpec& spec = *pipeline.trace;
-  if (spec.through == TraceSpec::Through::mean) return wanted.front();
-  const auto windows = windows_of(pipeline, wanted);
-  const auto& frames = spec.direction == TraceSpec::Direction::backward ? windows.back() : windows.front();
-  return frames[(frames.size() - 1) / 2];
-}
-
 double largest_speed(const SparseField& velocity) {
   double largest = 0;  // squared
   const Topology& topology = *velocity.topology();
@@ -52,8 +43,8 @@ double largest(double so_far, const std::vector<double>& values) {
 
 }  // namespace
 
-TraceRun::TraceRun(const Pipeline& pipeline, FrameSource& source, const Lattice& lattice,
-                   std::span<const std::size_t> wanted, const Sinks& sinks)
+TraceRun::TraceRun(const Pipeline& pipeline, const FrameSource& source, const Lattice& lattice,
+                   std::span<const std::size_t> wanted, const TracerSeeds& seeds, const Sinks& sinks)
     : pipeline_(pipeline),
       spec_(*pipeline.trace),
       sinks_(sinks),
@@ -62,7 +53,7 @@ TraceRun::TraceRun(const Pipeline& pipeline, FrameSource& source, const Lattice&
       time_unit_(source.units().time),
       unit_system_(source.units().name),
       box_(trace_box(source, wanted)),
-      seeds_(make_seeds(pipeline, source, box_, first_frame(pipeline, wanted))),
+      seeds_(seeds),
       first_time_(time_of(source.frames()[wanted.front()])),
       last_time_(time_of(source.frames()[wanted.back()])),
       outputs_(windows_of(pipeline, wanted).size()) {

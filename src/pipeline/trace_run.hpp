@@ -11,6 +11,7 @@
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/pipeline.hpp"
 #include "grainvdb/run.hpp"
+#include "grainvdb/seeds.hpp"
 #include "grainvdb/trace_report.hpp"
 #include "grainvdb/tracer_recorder.hpp"
 #include "grainvdb/tracer_sink.hpp"
@@ -23,10 +24,9 @@ class TraceRun {
  public:
   using Sinks = std::vector<std::unique_ptr<TracerSink>>;
 
-  /// `wanted` are the frames of the pipeline, in ascending order. Reads one of them where seeds are on particles. All
-  /// arguments must outlive the run. Throws ConfigError, InputError, IoError or LimitError.
-  TraceRun(const Pipeline& pipeline, FrameSource& source, const Lattice& lattice, std::span<const std::size_t> wanted,
-           const Sinks& sinks);
+  /// `wanted` are the frames of the pipeline, in ascending order. Pipeline, seeds and sinks must outlive the run.
+  TraceRun(const Pipeline& pipeline, const FrameSource& source, const Lattice& lattice,
+           std::span<const std::size_t> wanted, const TracerSeeds& seeds, const Sinks& sinks);
   ~TraceRun();
 
   /// From here on, tracers must stay where fields are known: before they could leave the neighbourhood, it grows along
@@ -64,7 +64,7 @@ class TraceRun {
   Lattice lattice_;
   std::string length_unit_, time_unit_, unit_system_;
   Box box_;
-  TracerSeeds seeds_;
+  const TracerSeeds& seeds_;
   double first_time_, last_time_;  ///< of the frames
   std::size_t outputs_;            ///< that are expected
   std::size_t taken_ = 0;

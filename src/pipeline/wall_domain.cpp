@@ -6,6 +6,7 @@
 
 #include "pipeline/branch_sets.hpp"
 #include "pipeline/number.hpp"
+#include "pipeline/unless_bad.hpp"
 #include "pipeline/wall_schema.hpp"
 
 namespace grainvdb {
@@ -83,15 +84,12 @@ double wall_clearance(const Pipeline& pipeline, FrameSource& source, std::span<c
   ColumnSet columns = Column::radius;
   if (!pipeline.select.types.empty()) columns |= Column::type;
   for (const std::size_t k : wanted) {
+    const auto frame = read_unless_bad(pipeline.input, source, k, columns);
+    if (!frame) continue;
     double largest = 0;
-    try {
-      const Frame frame = source.read(k, columns);
-      for (std::size_t i = 0; i < frame.particles.size(); ++i)
-        if (is_selected(pipeline.select, frame.box, frame.particles, i))
-          largest = std::max(largest, frame.particles.radius[i]);
-    } catch (const InputError&) {
-      if (pipeline.input.on_error == OnError::error) throw;
-    }
+    for (std::size_t i = 0; i < frame->particles.size(); ++i)
+      if (is_selected(pipeline.select, frame->box, frame->particles, i))
+        largest = std::max(largest, frame->particles.radius[i]);
     if (largest > 0) return 1.5 * largest;
   }
   return 0;  // there is no material, which is refused elsewhere

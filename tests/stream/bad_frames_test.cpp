@@ -10,6 +10,7 @@
 
 #include "stream/same_fields.hpp"
 #include "support/memory_source.hpp"
+#include "support/memory_tracers.hpp"
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
@@ -186,6 +187,41 @@ TEST_F(SkippedFrames, AreNotAllThereIs) {
       EXPECT_THAT(error.what(), AllOf(HasSubstr("every frame is bad"), HasSubstr("frame6:7: a bad row")));
     }
   }
+}
+
+// The contacts of the first frame are bad, its particles are not: tracers start on those of the second all the same.
+TEST_F(SkippedFrames, AreNotThoseOnWhichTracersStart) {
+  for (double& z : frames_[1].particles.position[2]) z += 0.01;
+  const Particles& second = frames_[1].particles;
+  for (const auto through : {TraceSpec::Through::mean, TraceSpec::Through::frames}) {
+    Pipeline p = skipping({"stress"});
+    p.trace.emplace();
+    p.trace->through = through;
+    p.trace->strain = false;
+    p.trace->seeds.particles.emplace(SeedSpec::OnParticles{{}, 20});
+    p.window = through == TraceSpec::Through::frames ? 1 : 0;
+    if (through == TraceSpec::Through::mean) p.trace->duration = 0.1, p.trace->dt = 0.05;
+    FaultySource faulty(frames_, {{0, Column::contacts}});
+    const Histories h = trace(p, faulty);
+    ASSERT_THAT(h.layout.id, SizeIs(::testing::Ge(2U)));
+    for (std::size_t i = 0; i < h.layout.id.size(); ++i) {
+      const auto row = std::find(second.id.begin(), second.id.end(), h.layout.id[i]) - second.id.begin();
+      EXPECT_EQ(h.samples[0].position[2][i], second.position[2].at(static_cast<std::size_t>(row)));
+    }
+    EXPECT_DOUBLE_EQ(h.samples[0].time, through == TraceSpec::Through::frames ? 0.1 : 0.0);
+  }
+}
+
+TEST_F(SkippedFrames, LeaveNoSeedsWhereAllAreBad) {
+  Pipeline p = skipping({"phi"});
+  p.trace.emplace();
+  p.trace->duration = 0.1;
+  p.trace->dt = 0.05;
+  p.trace->seeds.particles.emplace(SeedSpec::OnParticles{{}, 20});
+  std::map<std::int64_t, ColumnSet> all;
+  for (const Frame& f : frames_) all[f.step] = {};
+  FaultySource faulty(frames_, all);
+  EXPECT_THROW(trace(p, faulty), InputError);
 }
 
 // Files are in flight in any order, what is found in them is not.
