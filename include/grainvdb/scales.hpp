@@ -16,7 +16,8 @@ struct ScaleRun {
   std::vector<std::unique_ptr<TracerSink>> tracer_sinks{};
 };
 
-/// The pipeline at each of its scales; alone where it has none.
+/// The pipeline at each of its scales; alone where it has none. Tracers get whole grids
+/// (TraceSpec::Neighbourhood::never), so that every scale reads the same frames.
 std::vector<Pipeline> at_scales(const Pipeline& pipeline);
 
 /// As run_pipeline for each of the runs, with the same results, to the last bit. They go side by side: none is more

@@ -22,11 +22,16 @@ void add_tune(CLI::App& app);
 void add_completion(CLI::App& app);
 void add_man(CLI::App& app);
 
-/// The argument PIPELINE and the option --set, as several subcommands take them.
+/// The argument PIPELINE and the options --set and --frames, as several subcommands take them.
 struct PipelineArguments {
   std::string file;
   std::vector<std::string> overrides;
+  std::string frames;
+
+  /// What is set: --frames is short for --set frames=...
+  std::vector<std::string> settings() const;
 };
 void add_pipeline_arguments(CLI::App& command, PipelineArguments& arguments);
+void add_frames_option(CLI::App& command, PipelineArguments& arguments);
 
 }  // namespace grainvdb::cli

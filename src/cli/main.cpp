@@ -143,6 +143,17 @@ void add_pipeline_arguments(CLI::App& command, PipelineArguments& arguments) {
       ->take_all();
 }
 
+void add_frames_option(CLI::App& command, PipelineArguments& arguments) {
+  command.add_option("--frames", arguments.frames, "Frames first:end:step, short for --set frames=...")
+      ->type_name("A:B:C");
+}
+
+std::vector<std::string> PipelineArguments::settings() const {
+  std::vector<std::string> all = overrides;
+  if (!frames.empty()) all.push_back("frames=" + frames);
+  return all;
+}
+
 }  // namespace grainvdb::cli
 
 int main(int argc, char** argv) {

@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include "grainvdb/mask.hpp"
+#include "pipeline/number.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -56,9 +57,7 @@ std::string describe_trace(const TraceReport& trace) {
          "')['particles/tracers']))\"\n";
 }
 
-}  // namespace
-
-std::string warnings(const RunReport& report) {
+std::string warnings_of_input(const RunReport& report) {
   constexpr std::size_t shown = 10;
   std::string text;
   const std::size_t n = report.bad_frames.size();
@@ -67,11 +66,33 @@ std::string warnings(const RunReport& report) {
   if (n > shown)
     text += "grainvdb: warning: left out " + counted(n - shown, "more bad frame") +
             ", which the result lists in /provenance/bad_frames\n";
-  if (report.stop && !report.stop->met)
-    text += "grainvdb: warning: average.until was not met after all " + counted(report.stop->frames, "frame") + '\n';
-  if (report.trace && !report.trace->is_meaningful())
-    text += "grainvdb: warning: " + trace_warning(*report.trace) + '\n';
   return text;
+}
+
+std::string warnings_of_results(const RunReport& report, const std::string& where) {
+  std::string text;
+  if (report.stop && !report.stop->met)
+    text += "grainvdb: warning: " + where + "average.until was not met after all " +
+            counted(report.stop->frames, "frame") + '\n';
+  if (report.trace && !report.trace->is_meaningful())
+    text += "grainvdb: warning: " + where + trace_warning(*report.trace) + '\n';
+  return text;
+}
+
+}  // namespace
+
+std::string warnings(const RunReport& report) {
+  return warnings_of_input(report) + warnings_of_results(report, {});
+}
+
+std::string warnings(const std::vector<RunReport>& reports, const std::vector<std::string>& names) {
+  std::string text = warnings_of_input(reports.front());
+  for (std::size_t n = 0; n < reports.size(); ++n) text += warnings_of_results(reports[n], "at " + names[n] + ": ");
+  return text;
+}
+
+std::string scale_name(const Pipeline& pipeline) {
+  return "cutoff " + print_number(pipeline.cutoff) + ", voxel " + print_number(pipeline.voxel);
 }
 
 std::string describe(const RunReport& report) {

@@ -5,6 +5,9 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <tbb/global_control.h>
 
@@ -42,7 +45,6 @@ the fields. 'grainvdb schema --text' explains its keys.)";
 struct Options {
   PipelineArguments pipeline;
   std::string output = "output";
-  std::string frames;
   std::size_t threads = 0;
   bool resume = false;
   double checkpoint_interval = CheckpointOptions{}.interval;
@@ -61,41 +63,43 @@ std::vector<std::unique_ptr<Sink>> make_sinks(const std::vector<std::string>& fo
   return sinks;
 }
 
-Pipeline load(const Options& options) {
-  std::vector<std::string> overrides = options.pipeline.overrides;
-  if (!options.frames.empty()) overrides.push_back("frames=" + options.frames);
-  return load_pipeline(options.pipeline.file, overrides);
+/// The pipeline with its plan, and with files in a folder that can take them.
+ScaleRun make_run(Pipeline pipeline, const std::string& folder) {
+  ScaleRun run;
+  run.plan = make_plan(pipeline);
+  check_output_folder(folder);
+  run.sinks = make_sinks<FieldSink>(pipeline.formats, sink_registry(), folder);
+  if (pipeline.trace)
+    run.tracer_sinks = make_sinks<TracerSink>(pipeline.trace->formats, tracer_sink_registry(), folder);
+  run.pipeline = std::move(pipeline);
+  return run;
 }
 
-void run(const Pipeline& pipeline, const Options& options) {
+/// work(show) on as many threads as are wanted; show(progress) is for it to call again and again.
+template <class F>
+auto with_progress(const Options& options, F work) {
   std::optional<tbb::global_control> threads;
   if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
+  watch_for_interrupts();
+  ProgressLine line(stderr);
+  return work([&](const Progress& progress) {
+    check_for_interrupt();
+    if (!options.quiet) line.show(progress);
+  });
+}
 
-  const Plan plan = make_plan(pipeline);
-  check_output_folder(options.output);
-  const auto sinks = make_sinks<FieldSink>(pipeline.formats, sink_registry(), options.output);
-  std::vector<std::unique_ptr<TracerSink>> tracer_sinks;
-  if (pipeline.trace)
-    tracer_sinks = make_sinks<TracerSink>(pipeline.trace->formats, tracer_sink_registry(), options.output);
-
+void run_once(const Pipeline& pipeline, const Options& options) {
+  const ScaleRun run = make_run(pipeline, options.output);
   std::optional<CheckpointOptions> checkpoint;
   if (options.resume || options.follow) checkpoint = CheckpointOptions{options.output, options.checkpoint_interval};
-
-  watch_for_interrupts();
-  RunReport report;
-  {
-    ProgressLine line(stderr);
-    const auto show = [&](const Progress& progress) {
-      check_for_interrupt();
-      if (!options.quiet) line.show(progress);
-    };
-    if (options.follow) {
-      FollowedInput input(needed_input(pipeline, plan));
-      report = follow_pipeline(pipeline, plan, input, sinks, tracer_sinks, options.waiting, *checkpoint, show);
-    } else {
-      report = run_pipeline(pipeline, plan, *open_input(pipeline, plan), sinks, tracer_sinks, show, checkpoint);
-    }
-  }
+  const RunReport report = with_progress(options, [&](const auto& show) {
+    if (!options.follow)
+      return run_pipeline(run.pipeline, run.plan, *open_input(run.pipeline, run.plan), run.sinks, run.tracer_sinks,
+                          show, checkpoint);
+    FollowedInput input(needed_input(run.pipeline, run.plan));
+    return follow_pipeline(run.pipeline, run.plan, input, run.sinks, run.tracer_sinks, options.waiting, *checkpoint,
+                           show);
+  });
   std::cerr << warnings(report);
   if (!options.quiet) std::cout << describe(report);
 }
@@ -112,43 +116,33 @@ void run_at_scales(const Pipeline& pipeline, const Options& options) {
                        {},
                        "one scale, or neither --resume nor --follow",
                        {}});
-  std::optional<tbb::global_control> threads;
-  if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
   std::vector<ScaleRun> runs;
-  for (Pipeline& p : at_scales(pipeline)) {
-    const std::string folder = folder_of_scale(options.output, p);
-    check_output_folder(folder);
-    ScaleRun& run = runs.emplace_back();
-    run.plan = make_plan(p);
-    run.sinks = make_sinks<FieldSink>(p.formats, sink_registry(), folder);
-    if (p.trace) run.tracer_sinks = make_sinks<TracerSink>(p.trace->formats, tracer_sink_registry(), folder);
-    run.pipeline = std::move(p);
+  std::vector<std::string> names;
+  for (const Pipeline& p : at_scales(pipeline)) {
+    runs.push_back(make_run(p, folder_of_scale(options.output, p)));
+    names.push_back(scale_name(p));
   }
-  const auto source = open_input(runs.front().pipeline, runs.front().plan);
-  watch_for_interrupts();
-  std::vector<RunReport> reports;
-  {
-    ProgressLine line(stderr);
-    reports = run_scales(runs, *source, [&](const Progress& progress) {
-      check_for_interrupt();
-      if (!options.quiet) line.show(progress);
-    });
-  }
-  std::cerr << warnings(reports.front());
+  const std::vector<RunReport> reports = with_progress(options, [&](const auto& show) {
+    return run_scales(runs, *open_input(runs.front().pipeline, runs.front().plan), show);
+  });
+  std::cerr << warnings(reports, names);
   if (options.quiet) return;
-  for (std::size_t n = 0; n < runs.size(); ++n)
-    std::cout << "cutoff " << print_number(runs[n].pipeline.cutoff) << ", voxel "
-              << print_number(runs[n].pipeline.voxel) << '\n'
-              << describe(reports[n]);
+  for (std::size_t n = 0; n < runs.size(); ++n) std::cout << names[n] << '\n' << describe(reports[n]);
+}
+
+void run(const Pipeline& pipeline, const Options& options) {
+  pipeline.scales.empty() ? run_once(pipeline, options) : run_at_scales(pipeline, options);
+}
+
+Pipeline load(const Options& options) {
+  return load_pipeline(options.pipeline.file, options.pipeline.settings());
 }
 
 // Something must end the waiting.
 void run_or_follow(const Options& options) {
   if (options.follow && !options.waiting.last_step && !options.waiting.timeout)
     throw ConfigError({{}, "--follow needs an end", {}, "--last-step N, --timeout SECONDS, or both", {}});
-  const Pipeline pipeline = load(options);
-  if (pipeline.scales.empty()) return run(pipeline, options);
-  run_at_scales(pipeline, options);
+  run(load(options), options);
 }
 
 void trace(const Options& options) {
@@ -169,8 +163,7 @@ void add_options(CLI::App& command, Options& options) {
   command.add_option("-o,--output", options.output, "Folder for the results; made where there is none")
       ->type_name("DIR")
       ->capture_default_str();
-  command.add_option("--frames", options.frames, "Frames first:end:step, short for --set frames=...")
-      ->type_name("A:B:C");
+  add_frames_option(command, options.pipeline);
   command.add_option("--threads", options.threads, "Threads to use; all processors by default")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));

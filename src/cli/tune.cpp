@@ -36,7 +36,6 @@ where the data are large: the reference takes long. Writes DIR/tune.csv and, wit
 
 struct Options {
   PipelineArguments pipeline;
-  std::string frames;
   std::vector<std::string> tolerance, knobs, tries, reference;
   std::size_t repeats = 3;
   std::size_t threads = 1;
@@ -129,8 +128,7 @@ void tune_pipeline(const Options& options) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, options.threads);
   TuneRequest request;
   request.file = options.pipeline.file;
-  request.overrides = options.pipeline.overrides;
-  if (!options.frames.empty()) request.overrides.push_back("frames=" + options.frames);
+  request.overrides = options.pipeline.settings();
   request.reference = options.reference;
   request.tolerance = tolerances(options.tolerance);
   request.repeats = options.repeats;
@@ -175,8 +173,7 @@ void add_tune(CLI::App& app) {
   CLI::App* command = app.add_subcommand("tune", "Measure speed against accuracy of a pipeline's settings");
   const auto options = std::make_shared<Options>();
   add_pipeline_arguments(*command, options->pipeline);
-  command->add_option("--frames", options->frames, "Frames first:end:step, short for --set frames=...")
-      ->type_name("A:B:C");
+  add_frames_option(*command, options->pipeline);
   command
       ->add_option("--tolerance", options->tolerance,
                    "Largest relative error of a field; the fastest setting that keeps to all of them is proposed")

@@ -1,10 +1,12 @@
 #include <iostream>
 #include <memory>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/error_json.hpp"
 #include "cli/open_input.hpp"
 #include "grainvdb/run.hpp"
+#include "grainvdb/scales.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -37,13 +39,15 @@ void check_first_frame(const Pipeline& pipeline, const Plan& plan, const Lattice
 }
 
 void check(const Options& options) {
-  const Pipeline pipeline = load_pipeline(options.pipeline.file, options.pipeline.overrides);
-  const Plan plan = make_plan(pipeline);
-  if (!options.no_input) {
-    const auto source = open_input(pipeline, plan);
-    const Lattice lattice = check_against_input(pipeline, plan, *source);
-    check_trace_against_input(pipeline, *source);
-    check_first_frame(pipeline, plan, lattice, *source);
+  const std::vector<Pipeline> pipelines = at_scales(load_pipeline(options.pipeline.file, options.pipeline.settings()));
+  std::vector<Plan> plans;
+  for (const Pipeline& pipeline : pipelines) plans.push_back(make_plan(pipeline));
+  if (options.no_input) return;
+  const auto source = open_input(pipelines.front(), plans.front());
+  for (std::size_t n = 0; n < pipelines.size(); ++n) {
+    const Lattice lattice = check_against_input(pipelines[n], plans[n], *source);
+    check_trace_against_input(pipelines[n], *source);
+    check_first_frame(pipelines[n], plans[n], lattice, *source);
   }
 }
 

@@ -41,6 +41,12 @@ void complete_scales(Pipeline& pipeline, const Schema& schema, std::map<std::str
                        "both scales and average.until",
                        "one of them",
                        {}});
+  if (!pipeline.scales.empty() && pipeline.trace && pipeline.trace->neighbourhood == TraceSpec::Neighbourhood::always)
+    throw ConfigError({pipeline.location("trace.neighbourhood"),
+                       "passes around tracers alone would read frames at different times at each scale",
+                       "both scales and trace.neighbourhood: always",
+                       "one of them",
+                       {}});
   for (std::size_t k = 0; k < pipeline.scales.size(); ++k) {
     Scale& scale = pipeline.scales[k];
     if (scale.cutoff == 0 || scale.voxel == 0)

@@ -82,6 +82,8 @@ std::vector<Pipeline> at_scales(const Pipeline& pipeline) {
     p.cutoff = scale.cutoff;
     p.voxel = scale.voxel;
     p.resolved = scale.resolved;
+    // How often passes around the tracers alone read the frames, depends on the scale.
+    if (p.trace) p.trace->neighbourhood = TraceSpec::Neighbourhood::never;
   }
   return all;
 }
