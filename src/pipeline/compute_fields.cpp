@@ -19,6 +19,7 @@
 #include "pipeline/clip_fields.hpp"
 #include "pipeline/derive_errors.hpp"
 #include "pipeline/derive_fields.hpp"
+#include "pipeline/run_tally.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/steps.hpp"
 #include "pipeline/stopwatch.hpp"
@@ -34,14 +35,6 @@ namespace {
 using FramePtr = std::unique_ptr<FrameContext>;
 using MaybeFrame = OrFault<Frame>;
 using MaybeReady = OrFault<FramePtr>;
-
-std::size_t channel_count(const Plan& plan) {
-  std::size_t n = 0;
-  for (const Sweep& sweep : plan.sweeps)
-    for (const auto& pass : sweep.passes)
-      for (const MomentPtr& m : pass) n += static_cast<std::size_t>(m->channels);
-  return n;
-}
 
 OutputTime time_of(const FrameSource& source, std::span<const std::size_t> frames) {
   OutputTime t;
@@ -74,9 +67,8 @@ class Stream {
         end_(wanted_.size()),
         schedule_(schedule_windows(time_windows(pipeline, plan), wanted_.size())),
         averager_(pipeline, plan, schedule_, lattice, region),
-        walls_(WallTreatment::make(pipeline, plan, lattice, source, wanted_)) {
-    size_.images = images_per_particle(lattice, pipeline.cutoff);
-  }
+        walls_(WallTreatment::make(pipeline, plan, lattice, source, wanted_)),
+        tally_(images_per_particle(lattice, pipeline.cutoff)) {}
 
   RunReport run();
   /// Only the visits that further frames would not change.
@@ -96,7 +88,6 @@ class Stream {
   DeriveSetting derive_setting(const ErrorPlan& errors);
   void note_stop(const DerivedFields& all);
   void note_step(std::size_t frame);
-  void note_size(const FrameContext& frame);
   void show_progress(const Visit& visit);
   OutputTime time_of_window(std::size_t window) const;
   void require_material() const;
@@ -124,13 +115,11 @@ class Stream {
   std::optional<WallTreatment> walls_;
   Stopwatch clock_;
   Progress now_;
-  RunReport report_;
+  RunTally tally_;
   std::size_t outputs_ = 0;  // output times that are finished
   std::optional<std::size_t> last_window_;
   std::size_t steps_done_ = 0;  // frames, from the first on, that were visited
   BadFrames bad_;
-  RunSize size_;
-  std::size_t material_ = 0;  // particles that select kept, over frames and sweeps
 };
 
 RunReport Stream::run() {
@@ -141,21 +130,20 @@ RunReport Stream::run() {
   for (std::size_t k = 0; k < outputs_; ++k) take_(checkpoint_->load_output(k, lattice_));
   go_through(std::span(visits).subspan(now_.frames_done));
 
-  report_.frames = schedule_.frame_count() - bad_.count();
-  report_.bad_frames = bad_.list(source_);
-  report_.channels = channel_count(plan_);
-  report_.memory = memory_model(plan_, pipeline_).peak(size_);
-  report_.averaging.push_back(describe(schedule_, pipeline_));
-  if (report_.stop) {
-    report_.averaging.push_back(describe(*pipeline_.until, *report_.stop));
+  RunReport report = tally_.report(plan_, pipeline_);
+  report.frames = schedule_.frame_count() - bad_.count();
+  report.bad_frames = bad_.list(source_);
+  report.averaging.push_back(describe(schedule_, pipeline_));
+  if (report.stop) {
+    report.averaging.push_back(describe(*pipeline_.until, *report.stop));
   } else if (!plan_.errors.errors.empty()) {
-    report_.averaging.push_back(describe_blocks(schedule_));
+    report.averaging.push_back(describe_blocks(schedule_));
   }
-  if (walls_) report_.walls = walls_->describe();
-  report_.seconds = clock_.seconds();
-  report_.wall_seconds = clock_.passed();
-  report_.read = source_.counters();
-  return report_;
+  if (walls_) report.walls = walls_->describe();
+  report.seconds = clock_.seconds();
+  report.wall_seconds = clock_.passed();
+  report.read = source_.counters();
+  return report;
 }
 
 std::size_t Stream::run_certain() {
@@ -214,7 +202,7 @@ MaybeReady Stream::prepare(const Visit& visit, MaybeFrame frame) {
 void Stream::finish(const Visit& visit, MaybeReady& frame) {
   if (is_usable(visit, frame)) {
     clock_.time("splat", [&] { averager_.add(**frame.value, visit); });
-    note_size(**frame.value);
+    tally_.add(**frame.value);
   } else {
     averager_.leave_out(visit);
   }
@@ -259,12 +247,6 @@ void Stream::note_step(std::size_t frame) {
   steps_done_ = std::max(steps_done_, static_cast<std::size_t>(place) + 1);
 }
 
-void Stream::note_size(const FrameContext& frame) {
-  material_ += frame.particles().size();
-  size_.particles = std::max(size_.particles, static_cast<double>(frame.particles().size()));
-  size_.contacts = std::max(size_.contacts, static_cast<double>(frame.contact_count()));
-}
-
 void Stream::show_progress(const Visit& visit) {
   ++now_.frames_done;
   now_.doing = "frames";
@@ -298,7 +280,7 @@ void Stream::require_material() const {
                       std::to_string(bad.size()) + ", of which the last: " + bad.back().reason,
                       "at least one frame that can be used",
                       {}});
-  if (material_ == 0)
+  if (!tally_.has_material())
     throw InputError({{source_.frames()[wanted_[schedule_.windows.back().frames.first]].file, 0},
                       "no material in any of the frames",
                       {},
@@ -328,21 +310,15 @@ void Stream::note_stop(const DerivedFields& all) {
   const Until& until = *pipeline_.until;
   const double error =
       error_of_share(until, all.fields.at(until.field), all.fields.at(until.field + "_error"), region_);
-  report_.stop.emplace(Stop{wanted_.size(), frames_there_, end_ < frames_there_ || error <= until.error, error});
+  tally_.note_stop({wanted_.size(), frames_there_, end_ < frames_there_ || error <= until.error, error});
 }
 
 void Stream::end_window(std::size_t window) {
   if (window == last_window_) require_material();
   DerivedFields derived =
       clock_.time("derive", [&] { return tbb::this_task_arena::isolate([&] { return derive(); }); });
-  report_.summed_leaves = averager_.means().topology()->leaf_count();
-  size_.voxels = std::max(size_.voxels, static_cast<double>(report_.summed_leaves) * leaf_size);
+  tally_.add(derived, averager_.means().topology()->leaf_count());
   averager_.begin_window();
-  report_.active_voxels = derived.mask.topology()->active_voxel_count();
-  report_.grids += derived.grids;
-  report_.masked.clear();
-  for (const ReasonInfo& r : reasons())
-    if (const std::size_t n = derived.mask.count(r.reason); n > 0) report_.masked.emplace_back(r.name, n);
   OutputFields output{time_of_window(window), std::move(derived.fields), std::move(derived.mask)};
   if (checkpoint_ != nullptr) clock_.time("checkpoint", [&] { checkpoint_->save_output(window, output); });
   outputs_ = window + 1;
@@ -352,7 +328,7 @@ void Stream::end_window(std::size_t window) {
 void Stream::resume() {
   if (!checkpoint_->has_state()) return;
   checkpoint_->load_state([&](ByteReader& from) { load(from); });
-  report_.resumed_at = now_.frames_done;
+  tally_.note_resumed(now_.frames_done);
 }
 
 void Stream::save_progress() {
@@ -367,16 +343,7 @@ void Stream::save(ByteWriter& to) const {
   to.numbers(steps_of(source_, std::span(wanted_).first(steps_done_)));
   averager_.save(to);
   bad_.save(to);
-  to.number(size_);
-  for (const std::size_t n : {material_, report_.active_voxels, report_.summed_leaves, report_.grids})
-    to.number(std::uint64_t{n});
-  to.number(report_.stop.has_value());
-  if (report_.stop) to.number(*report_.stop);
-  to.number(std::uint64_t{report_.masked.size()});
-  for (const auto& [reason, voxels] : report_.masked) {
-    to.text(reason);
-    to.number(std::uint64_t{voxels});
-  }
+  tally_.save(to);
 }
 
 void Stream::load(ByteReader& from) {
@@ -388,13 +355,7 @@ void Stream::load(ByteReader& from) {
   steps_done_ = steps.size();
   averager_.load(from);
   bad_.load(from);
-  size_ = from.number<RunSize>();
-  for (std::size_t* n : {&material_, &report_.active_voxels, &report_.summed_leaves, &report_.grids}) *n = from.count();
-  if (from.number<bool>()) report_.stop = from.number<Stop>();
-  for (std::size_t left = from.count(); left > 0; --left) {
-    std::string reason = from.text();
-    report_.masked.emplace_back(std::move(reason), from.count());
-  }
+  tally_.load(from);
 }
 
 }  // namespace
