@@ -108,6 +108,10 @@ void Checkpoint::load_state(const std::function<void(ByteReader&)>& load) const 
   load(file);
 }
 
+void Checkpoint::note_resumed(std::size_t frames) {
+  if (!resumed_at_) resumed_at_ = frames;
+}
+
 bool Checkpoint::is_due() const {
   return std::chrono::steady_clock::now() - saved_ >= std::chrono::duration<double>(interval_);
 }
@@ -118,6 +122,8 @@ void Checkpoint::save_state(const std::function<void(ByteWriter&)>& save) {
   save(file);
   file.publish();
   saved_ = std::chrono::steady_clock::now();
+  if (!has_state_) resumed_at_ = 0;
+  has_state_ = true;
 }
 
 void Checkpoint::save_output(std::size_t k, const OutputFields& output) const {

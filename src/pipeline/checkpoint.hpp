@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,9 +28,12 @@ class Checkpoint {
   Checkpoint(const Checkpoint&) = delete;
   Checkpoint& operator=(const Checkpoint&) = delete;
 
-  /// Whether a run left its state here.
+  /// Whether there is a state: that of an earlier run, or one that was saved since.
   bool has_state() const { return has_state_; }
   void load_state(const std::function<void(ByteReader&)>& load) const;
+  /// How many frames an earlier run had done, as its state says; what this run saved itself does not count.
+  void note_resumed(std::size_t frames);
+  std::size_t resumed_at() const { return resumed_at_.value_or(0); }
   /// Whether it is time to save it again.
   bool is_due() const;
   void save_state(const std::function<void(ByteWriter&)>& save);
@@ -50,6 +54,7 @@ class Checkpoint {
   RunKey key_;
   int lock_ = -1;
   bool has_state_ = false;
+  std::optional<std::size_t> resumed_at_;  // 0 where there was nothing to resume
   std::chrono::steady_clock::time_point saved_ = std::chrono::steady_clock::now();
 };
 

@@ -132,6 +132,7 @@ RunReport Stream::run() {
 
   RunReport report = tally_.report(plan_, pipeline_);
   report.frames = schedule_.frame_count() - bad_.count();
+  if (checkpoint_ != nullptr) report.resumed_at = checkpoint_->resumed_at();
   report.bad_frames = bad_.list(source_);
   report.averaging.push_back(describe(schedule_, pipeline_));
   if (report.stop) {
@@ -328,7 +329,7 @@ void Stream::end_window(std::size_t window) {
 void Stream::resume() {
   if (!checkpoint_->has_state()) return;
   checkpoint_->load_state([&](ByteReader& from) { load(from); });
-  tally_.note_resumed(now_.frames_done);
+  checkpoint_->note_resumed(now_.frames_done);
 }
 
 void Stream::save_progress() {

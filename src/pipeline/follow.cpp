@@ -30,10 +30,12 @@ class Patience {
  public:
   explicit Patience(const FollowOptions& options) : options_(options) {}
 
-  void note(std::size_t frames) {
-    if (frames == frames_) return;
+  /// Whether frames have come.
+  bool note(std::size_t frames) {
+    if (frames <= frames_) return false;  // fewer where a file could not be read just now
     frames_ = frames;
     since_ = Clock::now();
+    return true;
   }
   bool has_ended() const {
     return options_.timeout && Clock::now() - since_ >= std::chrono::duration<double>(*options_.timeout);
@@ -75,12 +77,12 @@ RunReport follow_pipeline(const Pipeline& pipeline, const Plan& plan, FollowedIn
   for (;;) {
     const std::unique_ptr<FrameSource> source = input.look();
     const std::size_t frames = source ? source->frames().size() : 0;
-    patience.note(frames);
+    const bool come = patience.note(frames);
     if (options.last_step && frames > 0 && source->frames().back().step >= *options.last_step)
       return run_into({sinks, tracer_sinks}, pipeline, plan, *frames_up_to(*options.last_step, input), progress, &kept);
     if (patience.has_ended())
       return run_into({sinks, tracer_sinks}, pipeline, plan, *open_dumps(input.spec()), progress, &kept);
-    if (!select_frames(pipeline.frames, frames).empty())
+    if (come && !select_frames(pipeline.frames, frames).empty())
       now.frames_done = stream_certain(pipeline, plan, *source, progress, kept);
     now.frames_total = now.frames_done;
     wait_for(options.interval, now, progress);

@@ -20,7 +20,6 @@ class RunTally {
   /// An output time that is finished, for which so many leaves were summed.
   void add(const DerivedFields& output, std::size_t summed_leaves);
   void note_stop(const Stop& stop) { report_.stop = stop; }
-  void note_resumed(std::size_t frames) { report_.resumed_at = frames; }
 
   /// Whether select has kept a particle in any frame.
   bool has_material() const { return material_ > 0; }

@@ -1,5 +1,7 @@
 // Runs that begin before their input is complete.
+#include <atomic>
 #include <chrono>
+#include <csignal>
 #include <fstream>
 #include <thread>
 
@@ -40,8 +42,8 @@ void write_pipeline(const Folder& folder) {
 }
 
 /// What a simulation writes; contacts come first, or only after the grains.
-void simulate(const Folder& folder) {
-  for (int step = 0; step <= last_step; step += 100) {
+void simulate(const Folder& folder, int first = 0, int last = last_step) {
+  for (int step = first; step <= last; step += 100) {
     const std::string number = std::to_string(step);
     const auto grains = [&] { write_slowly(folder / ("frames/dump" + number + ".txt"), dump_text(step)); };
     const auto contacts = [&] { write_slowly(folder / ("frames/contacts" + number + ".txt"), contacts_text(step)); };
@@ -80,6 +82,40 @@ TEST(Follow, GivesWhatAPlainRunGives) {
                                              folder.path(), {}, [&](pid_t) { simulate(folder); });
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(result.out, HasSubstr("5 frames,"));
+    expect_plain_result(folder, settings);
+  }
+}
+
+// Killed while the simulation writes: once early, and once with a state to go on from.
+TEST(Follow, GoesOnAfterKills) {
+  const std::vector<std::vector<std::string>> cases{
+      {"--set", "output.fields=[phi,stress]"},
+      {"--set", "output.fields=[phi,kinetic_stress]", "--set", "average.window=2"}};
+  for (const auto& settings : cases) {
+    const Folder folder;
+    write_pipeline(folder);
+    const auto state = folder / "followed/.grainvdb-checkpoint/state";
+    const std::vector<std::string> words = follow(settings, {"--last-step", std::to_string(last_step)});
+    std::atomic<bool> killed = false;
+    std::jthread simulation([&] {
+      simulate(folder, 0, 200);
+      while (!killed) pause();  // the kill with a state comes before there is all
+      simulate(folder, 300);
+    });
+    const CommandResult early = run_command(words, folder.path(), {}, [](pid_t process) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      kill(process, SIGKILL);
+    });
+    EXPECT_EQ(early.exit_code, 128 + SIGKILL);
+    const CommandResult late = run_command(words, folder.path(), {}, [&](pid_t process) {
+      while (!std::filesystem::exists(state)) pause();
+      kill(process, SIGKILL);
+    });
+    killed = true;
+    EXPECT_EQ(late.exit_code, 128 + SIGKILL);
+    const CommandResult result = run_command(words, folder.path());
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, AllOf(HasSubstr("5 frames,"), HasSubstr("resumed: ")));
     expect_plain_result(folder, settings);
   }
 }
