@@ -205,6 +205,11 @@ std::vector<FileIdentity> DumpDirectory::whole_files() const {
   return all;
 }
 
+void DumpDirectory::require_no_fault() const {
+  for (const DumpSeries* series : {&particles_, &*contacts_})
+    if (series->fault()) std::rethrow_exception(series->fault());
+}
+
 std::unique_ptr<FrameSource> open_dumps(const InputSpec& spec) {
   check_spec(spec);
   return std::make_unique<DumpDirectory>(spec, find_files(spec));

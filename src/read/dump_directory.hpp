@@ -44,6 +44,8 @@ class DumpDirectory final : public FrameSource {
   void keep_frames_up_to(std::int64_t step);
   /// Files that settled and were found complete.
   std::vector<FileIdentity> whole_files() const;
+  /// Throws what is wrong with a file that will not be completed any more, although it may still be written to.
+  void require_no_fault() const;
 
  private:
   std::size_t find_contacts(std::int64_t step);

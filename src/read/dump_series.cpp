@@ -36,19 +36,24 @@ void DumpSeries::build_index() {
   frames_.clear();
   unreadable_.clear();
   std::map<FileClass, double> bytes_per_row;
-  std::vector<bool> used(files_.size(), false);
+  std::vector<std::size_t> pending;
+  std::size_t last_with_frames = 0;
   for (std::size_t file = 0; file < files_.size(); ++file) {
     const std::size_t before = frames_.size();
     if (files_[file].state == InputFile::State::settled || files_[file].state == InputFile::State::growing) {
-      index_complete_frames(file);
+      if (!index_complete_frames(file)) pending.push_back(file);
     } else {
       index_file(file, bytes_per_row);
     }
-    used[file] = frames_.size() > before;
+    if (frames_.size() > before) last_with_frames = file;
   }
+  for (const std::size_t file : pending)
+    if (file >= last_with_frames || !end_pending(file, bytes_per_row)) break;
   open_file_.reset();
   dump_ = {};
 
+  std::vector<bool> used(files_.size(), false);
+  for (const FrameRecord& frame : frames_) used[frame.file] = true;
   std::vector<std::size_t> new_number(files_.size());
   std::vector<InputFile> kept;
   for (std::size_t file = 0; file < files_.size(); ++file) {
@@ -82,27 +87,44 @@ void DumpSeries::add_frame(std::size_t file, std::size_t index_in_file, const Fr
                      column_set(header.columns), header.columns_line});
 }
 
-/// Of a file that may still be written to: what is malformed is on its way.
-void DumpSeries::index_complete_frames(std::size_t file) {
+/// Of a file that may still be written to: what is malformed is on its way. False where more of it must come.
+bool DumpSeries::index_complete_frames(std::size_t file) {
   const InputFile& input = files_[file];
-  bool whole = false;
   std::size_t count = 0;
   try {
-    if (!open(file)) return;
+    if (!open(file)) return !input.named;
     std::optional<FrameHeader> header = dump_.dump->next_header();
     while (header && header->kind == kind_ && dump_.dump->skip_rows()) {
       const bool is_last = dump_.dump->at_end();
-      if (is_last && input.state == InputFile::State::growing) return;
+      if (is_last && input.state == InputFile::State::growing) return false;
       note_units(*header, input.path);
       add_frame(file, count++, *header);
-      whole = is_last;
-      if (is_last) break;
+      if (is_last) {
+        whole_files_.push_back(input.identity);
+        return true;
+      }
       header = dump_.dump->next_header();
     }
+    return header && header->kind != kind_ && !input.named;
   } catch (const InputError&) {
-    return;
+    return false;
   }
-  if (whole) whole_files_.push_back(input.identity);
+}
+
+/// Of a file that is not complete though one behind it has frames. Where it has settled nothing more will come: it is
+/// what it is. Else what is behind it waits for it, and the result is false.
+bool DumpSeries::end_pending(std::size_t file, std::map<FileClass, double>& bytes_per_row) {
+  if (files_[file].state == InputFile::State::growing) {
+    std::erase_if(frames_, [&](const FrameRecord& frame) { return frame.file > file; });
+    return false;
+  }
+  std::erase_if(frames_, [&](const FrameRecord& frame) { return frame.file == file; });
+  try {
+    index_file(file, bytes_per_row);
+  } catch (const InputError&) {
+    if (!fault_) fault_ = std::current_exception();
+  }
+  return true;
 }
 
 void DumpSeries::index_file(std::size_t file, std::map<FileClass, double>& bytes_per_row) {

@@ -1,6 +1,7 @@
 #pragma once
 /// The frames of all dump files of one kind, particles or contacts, in ascending order of step.
 #include <cstddef>
+#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
@@ -44,7 +45,8 @@ class DumpSeries {
   /// of the same columns and compression was read through and held one frame, and this one has at most 1.25 times as
   /// many bytes per row; read_rows finds out should that ever be wrong. Files met in a directory that are no dumps of
   /// this kind are left out of files(). Of files that may still be written to only the frames that are complete are
-  /// noted. Throws InputError: a step twice, units in conflict and, unless such frames are
+  /// noted; those behind a file that grows wait for it, and a file that has settled before one with frames is
+  /// taken as it is. Throws InputError: a step twice, units in conflict and, unless such frames are
   /// to be skipped, no dump, malformed headers.
   void build_index();
   bool indexed() const { return indexed_; }
@@ -55,6 +57,8 @@ class DumpSeries {
   const std::vector<BadFrame>& unreadable() const { return unreadable_; }
   /// Files that settled and were found complete.
   const std::vector<FileIdentity>& whole_files() const { return whole_files_; }
+  /// What is wrong with a file that has settled before one with frames; nullptr where nothing is.
+  const std::exception_ptr& fault() const { return fault_; }
   const std::vector<std::string>& columns(const FrameRecord& frame) const { return column_sets_[frame.columns]; }
   /// What the index knows of a frame's header.
   FrameHeader header(const FrameRecord& frame) const;
@@ -77,7 +81,8 @@ class DumpSeries {
   template <class Read>
   bool attempt(const InputFile& input, Read read);
   void add_frame(std::size_t file, std::size_t index_in_file, const FrameHeader& header);
-  void index_complete_frames(std::size_t file);
+  bool index_complete_frames(std::size_t file);
+  bool end_pending(std::size_t file, std::map<FileClass, double>& bytes_per_row);
   void index_file(std::size_t file, std::map<FileClass, double>& bytes_per_row);
   void note_units(const FrameHeader& header, const std::string& path);
   std::size_t column_set(const std::vector<std::string>& columns);
@@ -91,6 +96,7 @@ class DumpSeries {
   std::vector<FrameRecord> frames_;
   std::vector<BadFrame> unreadable_;
   std::vector<FileIdentity> whole_files_;
+  std::exception_ptr fault_;
   std::vector<std::vector<std::string>> column_sets_;
   std::optional<Stated> units_;
   bool indexed_ = false;

@@ -48,21 +48,23 @@ const InputSpec& FollowedInput::spec() const {
 }
 
 std::unique_ptr<FrameSource> FollowedInput::look(std::optional<std::int64_t> last_step) {
+  std::unique_ptr<DumpDirectory> dumps;
   try {
     InputFiles files = find_files(seen_->spec);
     seen_->judge(files.particles);
     seen_->judge(files.contacts);
-    auto dumps = std::make_unique<DumpDirectory>(seen_->spec, std::move(files));
+    dumps = std::make_unique<DumpDirectory>(seen_->spec, std::move(files));
     dumps->keep_frames_with_contacts();
     if (last_step) dumps->keep_frames_up_to(*last_step);
     for (const FileIdentity& file : dumps->whole_files()) seen_->files[file].whole = true;
-    if (dumps->frames().empty()) return nullptr;
-    return dumps;
   } catch (const InputError&) {
     return nullptr;  // nothing that could be used has come
   } catch (const IoError&) {
     return nullptr;  // a file was renamed or removed while it was looked at
   }
+  dumps->require_no_fault();
+  if (dumps->frames().empty()) return nullptr;
+  return dumps;
 }
 
 }  // namespace grainvdb

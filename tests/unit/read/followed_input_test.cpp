@@ -82,15 +82,58 @@ TEST_F(FollowedInputTest, FramesWaitForTheirContacts) {
   };
   for (int step : {10, 20, 30}) append(dump_name(step), grains(step));
   append("c10", contacts(10));
-  append("c30", contacts(30));
   count();
   EXPECT_EQ(count(), 1U);
   append("c20", contacts(20).substr(0, contacts(20).size() - 3));
   count();
   EXPECT_EQ(count(), 1U);
   append("c20", contacts(20).substr(contacts(20).size() - 3));
+  append("c30", contacts(30));
   count();
   EXPECT_EQ(count(), 3U);
+}
+
+// Frames that were there must not get others before them.
+TEST_F(FollowedInputTest, FramesWaitForFilesBeforeThem) {
+  append("d1", grains(10) + grains(20));
+  append("d2", grains(30) + grains(40));
+  EXPECT_THAT(steps(), ElementsAre(10));  // whether 20 is whole will show, and 30 comes after it
+  EXPECT_THAT(steps(), ElementsAre(10, 20, 30, 40));
+  append("d3", grains(50) + grains(60));
+  append("d2", grains(45));
+  EXPECT_THAT(steps(), ElementsAre(10, 20, 30, 40));
+  EXPECT_THAT(steps(), ElementsAre(10, 20, 30, 40, 45, 50, 60));
+}
+
+// A dump that was cut off, and another behind it: it will not be completed, and must not be left out in silence.
+TEST_F(FollowedInputTest, WhatIsBadBeforeAnotherFrameIsKnownToBeBad) {
+  append("d10", grains(10));
+  append("d20", grains(20).substr(0, grains(20).size() - 5));
+  steps();
+  EXPECT_THAT(steps(), ElementsAre(10));
+  append("d30", grains(30));
+  EXPECT_THAT(steps(), ElementsAre(10));
+  EXPECT_THAT(steps(), ElementsAre(10, 20, 30));
+  const auto source = input_.look();
+  ASSERT_NE(source, nullptr);
+  EXPECT_THROW(source->read(1, Column::radius), InputError);
+}
+
+TEST_F(FollowedInputTest, AMalformedHeaderBeforeAnotherFrameIsAnErrorOrSkipped) {
+  append("d10", grains(10));
+  append("d20", "ITEM: TIMESTEP\ntwenty\n");
+  append("d30", grains(30));
+  FollowedInput failing(spec_);
+  EXPECT_EQ(failing.look(), nullptr);  // all may still be written to
+  EXPECT_THROW(failing.look(), InputError);
+  spec_.on_error = OnError::skip_frame;
+  FollowedInput skipping(spec_);
+  skipping.look();
+  const auto source = skipping.look();
+  ASSERT_NE(source, nullptr);
+  EXPECT_EQ(source->frames().size(), 2U);
+  ASSERT_EQ(source->unreadable().size(), 1U);
+  EXPECT_THAT(source->unreadable()[0].reason, ::testing::HasSubstr("d20:2"));
 }
 
 TEST_F(FollowedInputTest, EndsWithTheLastStep) {
