@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "measure/weighted_line.hpp"
+
 namespace grainvdb {
 namespace {
 
@@ -11,16 +13,6 @@ double mean_of(const std::vector<double>& values) {
 }
 
 }  // namespace
-
-Line line_through(const std::vector<double>& x, const std::vector<double>& y) {
-  const double x_mean = mean_of(x), y_mean = mean_of(y);
-  double squares = 0, products = 0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    squares += (x[k] - x_mean) * (x[k] - x_mean);
-    products += (x[k] - x_mean) * (y[k] - y_mean);
-  }
-  return {y_mean, products / squares};
-}
 
 std::vector<double> integral(const std::vector<double>& x, const std::vector<double>& f) {
   std::vector<double> sum(x.size());
@@ -37,15 +29,15 @@ std::vector<double> balanced_stress(const LayerProfile& layer, double gravity) {
 }
 
 Balance balance_of(const LayerProfile& layer, double gravity) {
-  const Line shear = line_through(layer.z, layer.shear);
-  const Line normal = line_through(layer.z, layer.normal);
+  const WeightedLine shear = weighted_line(layer.z, layer.shear);
+  const WeightedLine normal = weighted_line(layer.z, layer.normal);
   const double height = layer.z.empty() ? 0 : layer.z.back() - layer.z.front();
   const std::vector<double> expected = balanced_stress(layer, gravity);
   double squares = 0;
   for (std::size_t k = 0; k < expected.size(); ++k) squares += std::pow(layer.normal[k] - expected[k], 2);
-  return {shear.mean, shear.slope * height / shear.mean,
-          line_through(integral(layer.z, layer.density), layer.normal).slope, normal.slope * height / normal.mean,
-          std::sqrt(squares / static_cast<double>(expected.size())) / std::abs(normal.mean)};
+  return {shear.y_mean, shear.slope * height / shear.y_mean,
+          weighted_line(integral(layer.z, layer.density), layer.normal).slope, normal.slope * height / normal.y_mean,
+          std::sqrt(squares / static_cast<double>(expected.size())) / std::abs(normal.y_mean)};
 }
 
 Fit fit_drift(const std::vector<double>& time, const std::vector<double>& energy) {

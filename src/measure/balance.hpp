@@ -7,13 +7,6 @@
 
 namespace grainvdb {
 
-/// y = mean + slope (x - mean x), by least squares with equal weights. NaN for fewer than two different x.
-struct Line {
-  double mean;
-  double slope;
-};
-Line line_through(const std::vector<double>& x, const std::vector<double>& y);
-
 /// ∫ f dx from the first x, by the trapezoidal rule.
 std::vector<double> integral(const std::vector<double>& x, const std::vector<double>& f);
 

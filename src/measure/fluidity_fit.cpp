@@ -1,9 +1,10 @@
 #include "measure/fluidity_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
+
+#include "measure/weighted_line.hpp"
 
 namespace grainvdb {
 namespace {
@@ -19,25 +20,12 @@ double fall(double phi, double b, double w) {
   return x + std::sqrt(x * x + w * w);
 }
 
-double weight(const FluidityData& data, std::size_t n) {
-  return data.error.empty() ? 1 : 1 / (data.error[n] * data.error[n]);
-}
-
 /// The best A and k for given B and w: a straight line against s.
-Knee line_through(const FluidityData& data, double b, double w) {
-  double s0 = 0, s1 = 0, s2 = 0, y0 = 0, y1 = 0;
-  for (std::size_t n = 0; n < data.phi.size(); ++n) {
-    const double v = weight(data, n), s = fall(data.phi[n], b, w);
-    s0 += v, s1 += v * s, s2 += v * s * s, y0 += v * data.value[n], y1 += v * s * data.value[n];
-  }
-  Knee knee{.a = 0, .b = b, .w = w, .k = -(s0 * y1 - s1 * y0) / (s0 * s2 - s1 * s1)};
-  knee.a = (y0 + knee.k * s1) / s0;
-  knee.chi_square = 0;
-  for (std::size_t n = 0; n < data.phi.size(); ++n) {
-    const double residual = data.value[n] - knee.a + knee.k * fall(data.phi[n], b, w);
-    knee.chi_square += weight(data, n) * residual * residual;
-  }
-  return knee;
+Knee best_for(const FluidityData& data, double b, double w) {
+  std::vector<double> s;
+  for (const double phi : data.phi) s.push_back(fall(phi, b, w));
+  const WeightedLine line = weighted_line(s, data.value, data.error);
+  return {line.at(0), b, w, -line.slope, line.chi_square};
 }
 
 /// Where to start from: the best of a table of B and w. B lies within the data, since otherwise they have one branch
@@ -49,7 +37,7 @@ std::optional<Knee> start_of(const FluidityData& data, std::optional<double> hel
   for (int i = 0; i <= places; ++i)
     for (int j = 0; j < (held_w ? 1 : widths); ++j) {
       const double b = *low + (*high - *low) * i / places;
-      const Knee knee = line_through(data, b, held_w.value_or(1e-3 * std::pow(10, 0.25 * j)));
+      const Knee knee = best_for(data, b, held_w.value_or(1e-3 * std::pow(10, 0.25 * j)));
       const bool usable = std::isfinite(knee.chi_square) && knee.k > 0 && knee.a > 0;
       if (usable && (!best || knee.chi_square < best->chi_square)) best = knee;
     }

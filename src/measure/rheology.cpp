@@ -166,41 +166,40 @@ class RheologyMeasurement : public Measurement {
     if (!fit.fitted()) table.remarks.push_back("A fit of " + name + " is refused: " + fit.refusal + '.');
   }
 
+  /// The soft law where p* is known and the data show what it does, else the rigid one.
+  template <class LawFit>
+  LawFit fit_law(LawFit (*fit)(const RheologyData&, double), const std::string& name, RheologyData data,
+                 Table& table) const {
+    LawFit found = fit(data, condition_limit_);
+    if (found.fit.fitted() || data.soft_pressure.empty()) return found;
+    table.remarks.push_back("A fit of " + name + " with softness is refused: " + found.fit.refusal +
+                            ". Grains are taken as rigid.");
+    data.soft_pressure.clear();
+    return fit(data, condition_limit_);
+  }
+
   FrictionLawFit fit_friction(const std::vector<StateSample>& band, Table& table) const {
-    RheologyData data = data_of(band, friction);
-    FrictionLawFit fit = fit_friction_law(data, condition_limit_);
-    if (!fit.fit.fitted() && stiffness_ > 0) {
-      table.remarks.push_back("A fit of the soft mu(I, p*) is refused: " + fit.fit.refusal +
-                              ". Grains are taken as rigid in mu(I).");
-      data.soft_pressure.clear();
-      fit = fit_friction_law(data, condition_limit_);
-    }
-    const auto& [hard, p_0] = fit.law;
-    table.numbers.push_back({"mu_0", hard.mu_0, fit.error.hard.mu_0, dimension::none, "mu of slow flow"});
-    table.numbers.push_back(
-        {"mu_infinity", hard.mu_infinity, fit.error.hard.mu_infinity, dimension::none, "mu of fast flow"});
-    table.numbers.push_back({"I_0", hard.i_0, fit.error.hard.i_0, dimension::none, "I at which mu is half-way"});
-    if (stiffness_ > 0)
-      table.numbers.push_back({"p_0", p_0, fit.error.p_0, dimension::none, "p* at which mu vanishes"});
-    add_fit_quality("mu(I)", fit.fit, table);
-    return fit;
+    const FrictionLawFit found = fit_law(fit_friction_law, "mu(I)", data_of(band, friction), table);
+    const FrictionLaw& law = found.law.hard;
+    const FrictionLaw& error = found.error.hard;
+    table.numbers.push_back({"mu_0", law.mu_0, error.mu_0, dimension::none, "mu of slow flow"});
+    table.numbers.push_back({"mu_infinity", law.mu_infinity, error.mu_infinity, dimension::none, "mu of fast flow"});
+    table.numbers.push_back({"I_0", law.i_0, error.i_0, dimension::none, "I at which mu is half-way"});
+    if (std::isfinite(found.law.p_0))
+      table.numbers.push_back({"p_0", found.law.p_0, found.error.p_0, dimension::none, "p* at which mu vanishes"});
+    add_fit_quality("mu(I)", found.fit, table);
+    return found;
   }
 
   PackingLawFit fit_packing(const std::vector<StateSample>& band, Table& table) const {
-    RheologyData data = data_of(band, packing);
-    PackingLawFit fit = fit_packing_law(data, condition_limit_);
-    if (!fit.fit.fitted() && stiffness_ > 0) {
-      table.remarks.push_back("A fit of the soft nu(I, p*) is refused: " + fit.fit.refusal +
-                              ". Grains are taken as rigid in nu(I).");
-      data.soft_pressure.clear();
-      fit = fit_packing_law(data, condition_limit_);
-    }
-    table.numbers.push_back({"nu_c", fit.law.nu_c, fit.error.nu_c, dimension::none, "packing fraction of slow flow"});
-    table.numbers.push_back({"I_c", fit.law.i_c, fit.error.i_c, dimension::none, "scale of I in nu(I)"});
-    if (std::isfinite(fit.law.p_c))
-      table.numbers.push_back({"p_c", fit.law.p_c, fit.error.p_c, dimension::none, "scale of p* in nu(p*)"});
-    add_fit_quality("nu(I)", fit.fit, table);
-    return fit;
+    const PackingLawFit found = fit_law(fit_packing_law, "nu(I)", data_of(band, packing), table);
+    const auto& [i_c, p_c, nu_c] = found.law;
+    table.numbers.push_back({"nu_c", nu_c, found.error.nu_c, dimension::none, "packing fraction of slow flow"});
+    table.numbers.push_back({"I_c", i_c, found.error.i_c, dimension::none, "scale of I in nu(I)"});
+    if (std::isfinite(p_c))
+      table.numbers.push_back({"p_c", p_c, found.error.p_c, dimension::none, "scale of p* in nu(p*)"});
+    add_fit_quality("nu(I)", found.fit, table);
+    return found;
   }
 
   void add_remarks(const std::vector<StateSample>& samples, Table& table) const {

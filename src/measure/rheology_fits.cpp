@@ -1,9 +1,10 @@
 #include "measure/rheology_fits.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
+
+#include "measure/weighted_line.hpp"
 
 namespace grainvdb {
 namespace {
@@ -31,31 +32,22 @@ double share(double inertial_number, double log_i_0) {
   return inertial_number / (std::exp(log_i_0) + inertial_number);
 }
 
-/// What a law with one nonlinear parameter can start from: the best line y = a + b s_k(q) over a table of q.
-struct LineStart {
-  double a = 0, b = 0, q = 0;
+/// What the fit of μ(I) starts from: the best line against I/(I₀+I) over a table of I₀.
+struct FrictionStart {
+  double mu_0 = 0, mu_infinity = 0, log_i_0 = 0;
   double chi_square = infinity;
 };
 
-LineStart friction_start(const RheologyData& data) {
+FrictionStart friction_start(const RheologyData& data) {
   const auto [low, high] = std::minmax_element(data.inertial_number.begin(), data.inertial_number.end());
-  LineStart best;
+  FrictionStart best;
   constexpr int places = 60;
   for (int i = 0; i <= places; ++i) {
     const double q = std::log(*low / 10) + std::log(100 * *high / *low) * i / places;
-    double s0 = 0, s1 = 0, s2 = 0, y0 = 0, y1 = 0;
-    for (std::size_t k = 0; k < data.value.size(); ++k) {
-      const double v = data.error.empty() ? 1 : 1 / (data.error[k] * data.error[k]);
-      const double s = share(data.inertial_number[k], q);
-      s0 += v, s1 += v * s, s2 += v * s * s, y0 += v * data.value[k], y1 += v * s * data.value[k];
-    }
-    LineStart line{.b = (s0 * y1 - s1 * y0) / (s0 * s2 - s1 * s1), .q = q, .chi_square = 0};
-    line.a = (y0 - line.b * s1) / s0;
-    for (std::size_t k = 0; k < data.value.size(); ++k) {
-      const double residual = data.value[k] - line.a - line.b * share(data.inertial_number[k], q);
-      line.chi_square += residual * residual / (data.error.empty() ? 1 : data.error[k] * data.error[k]);
-    }
-    if (line.chi_square < best.chi_square) best = line;
+    std::vector<double> shares;
+    for (const double inertial_number : data.inertial_number) shares.push_back(share(inertial_number, q));
+    const WeightedLine line = weighted_line(shares, data.value, data.error);
+    if (line.chi_square < best.chi_square) best = {line.at(0), line.at(1), q, line.chi_square};
   }
   return best;
 }
@@ -81,13 +73,14 @@ FrictionLawFit fit_friction_law(const RheologyData& data, double condition_limit
   const bool with_pressure = soft(data);
   if (too_few(data, with_pressure ? 4 : 3, result.fit)) return result;
 
-  const LineStart start = friction_start(data);
+  const FrictionStart start = friction_start(data);
   const double scale = largest(data.value);
   FitProblem problem;
   problem.observed = data.value;
   problem.error = data.error;
   problem.condition_limit = condition_limit;
-  problem.parameters = {{"mu_0", start.a, scale}, {"mu_infinity", start.a + start.b, scale}, {"ln I_0", start.q, 1}};
+  problem.parameters = {
+      {"mu_0", start.mu_0, scale}, {"mu_infinity", start.mu_infinity, scale}, {"ln I_0", start.log_i_0, 1}};
   if (with_pressure) problem.parameters.push_back({"p_0^-1/2", 0, 1 / std::sqrt(largest(data.soft_pressure))});
   problem.model = [&](std::size_t k, std::span<const double> p, std::span<double> slopes) {
     const double s = share(data.inertial_number[k], p[2]);
