@@ -36,15 +36,19 @@ FluidityLaw law_named(const std::string& name) {
   return zhang_kamrin_law;
 }
 
+double held_c(double given, const std::string& compare) {
+  return given > 0 ? given : law_named(compare).c;
+}
+
 class FluidityMeasurement : public Measurement {
  public:
   explicit FluidityMeasurement(const MeasurementSetting& setting)
       : spin_(with_spin(setting.options)),
         hold_(std::get<std::string>(setting.options.at("hold_c"))),
-        c_(std::get<double>(setting.options.at("c"))),
         condition_limit_(std::get<double>(setting.options.at("condition_limit"))),
         error_floor_(std::get<double>(setting.options.at("error_floor"))),
         compare_(std::get<std::string>(setting.options.at("compare"))),
+        c_(held_c(std::get<double>(setting.options.at("c")), compare_)),
         samples_(make_samples(setting, sample_fields(spin_), spin_ ? 4 : 2, quantities(spin_))) {}
 
   void take(const OutputFields& output) override { samples_->take(output); }
@@ -146,8 +150,9 @@ class FluidityMeasurement : public Measurement {
 
   bool spin_;
   std::string hold_;
-  double c_, condition_limit_, error_floor_;
+  double condition_limit_, error_floor_;
   std::string compare_;
+  double c_;
   std::unique_ptr<StateSamples> samples_;
 };
 
@@ -163,10 +168,8 @@ std::vector<OptionInfo> options() {
                  .help = "whether C is held at `c`: never, if_refused (where the data do not determine all four "
                          "parameters), or always",
                  .choices = {"never", "if_refused", "always"}});
-  all.push_back({.name = "c",
-                 .default_value = zhang_kamrin_law.c,
-                 .help = "the C that is held, of (3) by default",
-                 .minimum = 0});
+  all.push_back(
+      {.name = "c", .default_value = 0.0, .help = "the C that is held; 0: that of the law of `compare`", .minimum = 0});
   all.push_back({.name = "condition_limit",
                  .default_value = 1000.0,
                  .help = "a fit is refused where its scaled Jacobian has a larger condition number: 35 to 190 with "
