@@ -20,6 +20,9 @@ int second_across(int axis) {
   return (axis + 2) % 3;
 }
 
+/// More than there are voxels along an axis.
+constexpr std::int64_t shells_per_slab = std::int64_t{1} << 32;
+
 }  // namespace
 
 std::vector<OptionInfo> bin_options() {
@@ -40,6 +43,10 @@ std::vector<OptionInfo> bin_options() {
        .help = "voxel centres below along the axis are left out [length]; no bounds where from and to are 0"},
       {.name = "to", .default_value = 0.0, .help = "voxel centres from here on along the axis are left out [length]"},
       {.name = "bin", .default_value = 0.0, .help = "width of a bin [length]; 0: the voxel", .minimum = 0},
+      {.name = "slab",
+       .default_value = 0.0,
+       .help = "height of the slabs that shells are cut into [length]; 0: each is one, over the whole height",
+       .minimum = 0},
       {.name = "points",
        .default_value = std::int64_t{0},
        .help = "voxels of each plane, evenly spaced: a square number, 16 for 4 x 4; 0: all of them",
@@ -55,6 +62,7 @@ BinSpec bin_spec(const OptionValues& options) {
   spec.from = get<double>(options, "from");
   spec.to = get<double>(options, "to");
   spec.width = get<double>(options, "bin");
+  spec.slab = get<double>(options, "slab");
   spec.points = get<std::int64_t>(options, "points");
   return spec;
 }
@@ -77,6 +85,9 @@ std::optional<OptionConflict> bin_conflict(const OptionValues& options) {
   if (spec.points > 0 && spec.geometry == BinSpec::Geometry::shells)
     return OptionConflict{"points", std::to_string(spec.points) + " with geometry 'shells'",
                           "0: shells are averaged over all their voxels"};
+  if (spec.slab > 0 && spec.geometry == BinSpec::Geometry::planes)
+    return OptionConflict{"slab", std::to_string(spec.slab) + " with geometry 'planes'",
+                          "0: `bin` is the height that planes are averaged over"};
   return std::nullopt;
 }
 
@@ -96,7 +107,7 @@ std::optional<VoxelPlace> Bins::place(std::size_t leaf, int offset, const Coord&
   const Vec3 x = lattice_.centre(c);
   const auto axis = static_cast<std::size_t>(spec_.axis);
   if (!within(x[axis])) return std::nullopt;
-  VoxelPlace place{leaf, offset, c[spec_.axis], x[axis]};
+  VoxelPlace place{leaf, offset, c[spec_.axis], x[axis], x[axis]};
   if (spec_.geometry == BinSpec::Geometry::shells) {
     const auto p = static_cast<std::size_t>(first_across(spec_.axis));
     const auto q = static_cast<std::size_t>(second_across(spec_.axis));
@@ -106,7 +117,9 @@ std::optional<VoxelPlace> Bins::place(std::size_t leaf, int offset, const Coord&
     place.cosine = along / place.position;
     place.sine = across / place.position;
     const double width = spec_.width > 0 ? spec_.width : lattice_.voxel();
-    place.bin = static_cast<std::int64_t>(std::floor(place.position / width));
+    const double slab = spec_.slab > 0 ? std::floor(place.height / spec_.slab) : 0;
+    place.bin = static_cast<std::int64_t>(slab) * shells_per_slab +
+                static_cast<std::int64_t>(std::floor(place.position / width));
   } else if (spec_.width > 0) {
     place.bin = static_cast<std::int64_t>(std::floor(place.position / spec_.width));
   }

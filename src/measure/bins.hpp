@@ -24,11 +24,12 @@ struct BinSpec {
   Vec3 centre{};            ///< a point of the axis of the shells [length]
   double from = 0;          ///< voxel centres below along the axis are left out [length] …
   double to = 0;            ///< … and those from here on; no bounds where from = to = 0
+  double slab = 0;          ///< height of the slabs that shells are cut into [length]; 0: they are not
   double width = 0;         ///< of a bin [length]; 0: the voxel
   std::int64_t points = 0;  ///< voxels of a plane, √points along each of its axes; 0: all
 };
 
-/// axis, geometry, centre, from, to, bin and points, as the measurements of profiles offer them.
+/// axis, geometry, centre, from, to, bin, slab and points, as the measurements of profiles offer them.
 std::vector<OptionInfo> bin_options();
 BinSpec bin_spec(const OptionValues& options);
 /// Refuses from ≥ to, both of which any measurement with heights has.
@@ -39,8 +40,9 @@ std::optional<OptionConflict> bin_conflict(const OptionValues& options);
 struct VoxelPlace {
   std::size_t leaf;
   int offset;
-  std::int64_t bin;
-  double position;              ///< along the normal, or the distance from the axis [length]
+  std::int64_t bin;             ///< ascending with the height, within a slab with the distance from the axis
+  double height;                ///< along the axis [length]
+  double position;              ///< the height for planes, the distance from the axis for shells [length]
   double cosine = 1, sine = 0;  ///< of the angle from the axis after `axis` (y after x, z after y, x after z)
 };
 

@@ -8,7 +8,8 @@ namespace grainvdb {
 namespace {
 
 // The channels before those of the fields.
-constexpr std::size_t weight_channel = 0, position_channel = 1, voxel_channel = 2, field_channels = 3;
+constexpr std::size_t weight_channel = 0, position_channel = 1, height_channel = 2, voxel_channel = 3,
+                      field_channels = 4;
 constexpr std::size_t most_components = 9;
 
 /// principal_stress has three components, but is no vector.
@@ -72,6 +73,7 @@ void FieldProfile::take(const OutputFields& output) {
     const std::span<double> sums = sums_->at(place.bin);
     sums[weight_channel] += frames;
     sums[position_channel] += frames * place.position;
+    sums[height_channel] += frames * place.height;
     sums[voxel_channel] += 1;
     for (std::size_t n = 0; n < parts_.size(); ++n) {
       const Part& p = parts_[n];
@@ -99,6 +101,10 @@ FieldProfile::Means::Means(const FieldProfile& profile, std::int64_t bin, std::o
 
 double FieldProfile::Means::position() const {
   return sums_[position_channel] / sums_[weight_channel];
+}
+
+double FieldProfile::Means::height() const {
+  return sums_[height_channel] / sums_[weight_channel];
 }
 
 double FieldProfile::Means::voxels() const {

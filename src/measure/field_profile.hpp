@@ -42,6 +42,7 @@ class FieldProfile {
    public:
     Means(const FieldProfile& profile, std::int64_t bin, std::optional<std::size_t> without = {});
     double position() const;  ///< mean over the voxels
+    double height() const;    ///< likewise
     double voxels() const;    ///< per output time, mean
     double value(const std::string& field, int component = 0) const;
     FlowState state() const;  ///< of what there is among the fields

@@ -96,6 +96,7 @@ class FluidityMeasurement : public Measurement {
     table.columns.push_back({"fit", dimension::none, "the fitted law (A20)"});
     table.columns.push_back({"law_3", dimension::none, "the law of Zhang and Kamrin (3)"});
     table.columns.push_back({"position", dimension::length, "along the axis, or from it for shells"});
+    table.columns.push_back({"height", dimension::length, "along the axis"});
     if (spin_) {
       add_estimate_columns(table, "dv_over_d_domega", dimension::none, "dv/(d domega) (A25)");
       add_estimate_columns(table, "g_over_domega", dimension::none, "g/domega (A24)");
@@ -107,9 +108,10 @@ class FluidityMeasurement : public Measurement {
       table.columns[3].values.push_back(fitted(phi));
       table.columns[4].values.push_back(zhang_kamrin_law(phi));
       table.columns[5].values.push_back(sample.position);
+      table.columns[6].values.push_back(sample.height);
       if (!spin_) continue;
-      append(table, 6, sample.values[dv_over_d_domega]);
-      append(table, 8, sample.values[g_over_domega]);
+      append(table, 7, sample.values[dv_over_d_domega]);
+      append(table, 9, sample.values[g_over_domega]);
     }
   }
 

@@ -51,6 +51,7 @@ class ProfileMeasurement : public Measurement {
                 "<q> = sum w q/sum w over voxels and times, w = phi for means over volume, 1 for others"};
     table.columns.push_back({shells ? "r" : profile_.geometry().directions()[axis()], dimension::length,
                              shells ? "mean distance of the voxels from the axis" : "mean position of the voxels"});
+    table.columns.push_back({"height", dimension::length, "mean position of the voxels along the axis"});
     table.columns.push_back({"voxels", dimension::none, "voxels averaged per output time"});
     for (const std::string& name : asked_) add_columns(table, name);
     for (const std::int64_t bin : profile_.bins()) add_row(table, bin);
@@ -78,8 +79,9 @@ class ProfileMeasurement : public Measurement {
   void add_row(Table& table, std::int64_t bin) const {
     const FieldProfile::Means means(profile_, bin);
     table.columns[0].values.push_back(means.position());
-    table.columns[1].values.push_back(means.voxels());
-    const std::size_t outputs = (table.columns.size() - 2) / 2;
+    table.columns[1].values.push_back(means.height());
+    table.columns[2].values.push_back(means.voxels());
+    const std::size_t outputs = (table.columns.size() - fixed_columns) / 2;
     const auto estimates = profile_.estimate(bin, outputs, [&](const FieldProfile::Means& part, std::span<double> out) {
       std::size_t next = 0;
       for (const std::string& name : asked_) {
@@ -90,8 +92,10 @@ class ProfileMeasurement : public Measurement {
         }
       }
     });
-    for (std::size_t n = 0; n < outputs; ++n) append(table, 2 + 2 * n, estimates[n]);
+    for (std::size_t n = 0; n < outputs; ++n) append(table, fixed_columns + 2 * n, estimates[n]);
   }
+
+  static constexpr std::size_t fixed_columns = 3;  // position, height and voxels
 
   std::vector<std::string> asked_;
   FieldProfile profile_;

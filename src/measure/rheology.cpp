@@ -129,6 +129,7 @@ class RheologyMeasurement : public Measurement {
     table.columns.push_back({"regime", dimension::none, "0 quasi-static, 1 intermediate, 2 inertial"});
     table.columns.push_back({"in_band", dimension::none, "1 in the shear band, 0 outside: fits leave that out"});
     table.columns.push_back({"position", dimension::length, "along the axis, or from it for shells"});
+    table.columns.push_back({"height", dimension::length, "along the axis"});
   }
 
   void add_row(const StateSample& sample, double band_rate, const SoftFrictionLaw& mu, const PackingLaw& nu,
@@ -137,8 +138,9 @@ class RheologyMeasurement : public Measurement {
     const double i = sample.values[inertial_number].value;
     const double soft = stiffness_ > 0 ? sample.values[p_star].value : 0;
     std::size_t column = 2 * described.size();
-    for (const double value : {mu(i, soft), FrictionLaw{}(i), nu(i, soft), static_cast<double>(bounds_(i)),
-                               sample.values[shear_rate].value >= band_rate ? 1.0 : 0.0, sample.position})
+    for (const double value :
+         {mu(i, soft), FrictionLaw{}(i), nu(i, soft), static_cast<double>(bounds_(i)),
+          sample.values[shear_rate].value >= band_rate ? 1.0 : 0.0, sample.position, sample.height})
       table.columns[column++].values.push_back(value);
   }
 

@@ -30,7 +30,8 @@ class ProfileSamples : public StateSamples {
   std::vector<StateSample> samples() const override {
     std::vector<StateSample> all;
     for (const std::int64_t bin : profile_.bins()) {
-      StateSample sample{FieldProfile::Means(profile_, bin).position(), {}};
+      const FieldProfile::Means place(profile_, bin);
+      StateSample sample{place.position(), place.height(), {}};
       sample.values = profile_.estimate(bin, quantities_, [&](const FieldProfile::Means& means, std::span<double> out) {
         FlowState state = means.state();
         floor_.set(state);
@@ -63,7 +64,7 @@ class VoxelSamples : public StateSamples {
       floor_.set(state);
       f_(state, values);
       if (std::isnan(values.front())) return;
-      StateSample sample{place.position, {}};
+      StateSample sample{place.position, place.height, {}};
       for (const double v : values) sample.values.push_back({v, FlowState::unknown});
       samples_.push_back(std::move(sample));
     });

@@ -17,6 +17,7 @@ namespace grainvdb {
 /// single output time.
 struct StateSample {
   double position;  ///< along the normal of the planes, or from the axis of the shells [length]
+  double height;    ///< along the axis [length]
   std::vector<Estimate> values;
 };
 

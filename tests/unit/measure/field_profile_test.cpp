@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <tuple>
 
 #include <gtest/gtest.h>
@@ -196,6 +197,26 @@ TEST(Bins, HeightsAndPointsAreCut) {
   EXPECT_EQ(FieldProfile::Means(profile, 1).position(), 1.5);
 }
 
+// φ = r + 100 z comes back from every shell of every slab: 8 heights in slabs of two.
+TEST(Bins, ShellsAreCutIntoSlabs) {
+  BinSpec spec;
+  spec.geometry = BinSpec::Geometry::shells;
+  spec.slab = 1;
+  FieldProfile profile(spec, lattice, {"phi"});
+  profile.take(synthetic_output(lattice, {-3, -3, -4}, {2, 2, 3},
+                                {scalar("phi", [](const Vec3& x) { return std::hypot(x[0], x[1]) + 100 * x[2]; })}));
+  std::set<double> heights;
+  double before = -3;
+  for (const std::int64_t bin : profile.bins()) {
+    const FieldProfile::Means means(profile, bin);
+    EXPECT_NEAR(means.value("phi"), means.position() + 100 * means.height(), 200 * rounding);
+    EXPECT_GE(means.height(), before);
+    before = means.height();
+    heights.insert(before);
+  }
+  EXPECT_EQ(heights, (std::set<double>{-1.5, -0.5, 0.5, 1.5}));
+}
+
 TEST(Bins, RefusesWhatMakesNoSense) {
   OptionValues values;
   for (const OptionInfo& option : bin_options()) values[option.name] = option.default_value;
@@ -210,6 +231,9 @@ TEST(Bins, RefusesWhatMakesNoSense) {
   EXPECT_FALSE(bin_conflict(points));
   points["geometry"] = std::string("shells");
   EXPECT_EQ(bin_conflict(points)->option, "points");
+  OptionValues slab = values;
+  slab["slab"] = 1.0;
+  EXPECT_EQ(bin_conflict(slab)->option, "slab");
   values["centre"] = std::vector<double>{1, 2};
   EXPECT_EQ(bin_conflict(values)->option, "centre");
 }

@@ -55,7 +55,7 @@ TEST(Profile, ShellsHaveColumnsOfTheirDirections) {
   outputs.push_back(rotation(4));
   const Table table = profile_of(options, outputs);
   EXPECT_EQ(table.columns.front().name, "r");
-  EXPECT_EQ(table.columns.size(), 2U + 2 * (1 + 3 + 9 + 1));
+  EXPECT_EQ(table.columns.size(), 3U + 2 * (1 + 3 + 9 + 1));
   const std::vector<double>& r = column_of(table, "r");
   ASSERT_FALSE(r.empty());
   for (std::size_t n = 0; n < r.size(); ++n) {
