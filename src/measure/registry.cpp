@@ -8,6 +8,10 @@ namespace grainvdb {
 const std::vector<MeasurementInfo>& measurement_registry() {
   static const std::vector<MeasurementInfo> registry = [] {
     std::vector<MeasurementInfo> all;
+    const auto add = [&all](const std::vector<MeasurementInfo>& family) {
+      all.insert(all.end(), family.begin(), family.end());
+    };
+    add(plasticity_measurements());
     return all;
   }();
   return registry;
