@@ -1,11 +1,11 @@
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "grainvdb/run.hpp"
-#include "measure/histogram.hpp"
+#include "measure/distribution.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/voxel_values.hpp"
-#include "measure/weighted_sample.hpp"
 
 namespace grainvdb {
 namespace {
@@ -20,10 +20,8 @@ class IncipientYield : public Measurement {
   explicit IncipientYield(const MeasurementSetting& setting)
       : weight_(weight_of(setting.options)),
         least_phi_(std::get<double>(setting.options.at("phi_min"))),
-        independence_(independence(setting.lattice.voxel(), setting.kernel)),
-        ratio_(0, std::get<double>(setting.options.at("mu_max")), bins(setting)),
-        deviators_(3, Histogram(-1, 2, bins(setting))),
-        deviator_(3) {}
+        ratio_(distribution(setting, 0, std::get<double>(setting.options.at("mu_max")))),
+        deviators_(3, distribution(setting, -1, 2)) {}
 
   void take(const OutputFields& fields) override {
     for_each_value(fields, {"phi", "mu_mohr_coulomb", "principal_stress", weight_},
@@ -35,49 +33,30 @@ class IncipientYield : public Measurement {
   std::vector<Table> tables() override { return {ratio_table(), deviator_table()}; }
 
  private:
-  static std::size_t bins(const MeasurementSetting& setting) {
-    return static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("bins")));
+  static Distribution distribution(const MeasurementSetting& setting, double lo, double hi) {
+    return {lo, hi, static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("bins"))),
+            independence(setting.lattice.voxel(), setting.kernel)};
   }
 
   void add(double mu, std::span<const double, 3> principal, double weight) {
-    if (std::isnan(weight)) return;
-    offered_ += weight;
-    if (std::isnan(mu)) return;
-    mu_.add(mu, weight);
     ratio_.add(mu, weight);
+    if (std::isnan(mu)) return;
     const double pressure = -(principal[0] + principal[1] + principal[2]) / 3;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double deviator = (-principal[k] - pressure) / pressure;
-      deviator_[k].add(deviator, weight);
-      deviators_[k].add(deviator, weight);
-    }
+    for (std::size_t k = 0; k < 3; ++k) deviators_[k].add((-principal[k] - pressure) / pressure, weight);
   }
 
   Table ratio_table() const {
     Table t{.name = "incipient_yield",
             .description = "distribution of the Mohr-Coulomb stress ratio; narrow where the material yields everywhere",
             .equation = "mu_MC = (p3 - p1)/(2 sqrt(p3 p1)), p1 < p3 the extreme principal stresses"};
-    t.columns = {{"mu_mohr_coulomb", dimension::none, "middle of the bin", ratio_.centres()},
-                 {"density", dimension::none, "share of the weight by width of the bin", ratio_.densities()}};
-    t.numbers = {{.name = "mean",
-                  .value = mu_.mean(),
-                  .error = mu_.mean_error(independence_),
-                  .description = "weighted mean of mu_MC; error as if the stress were uncorrelated beyond the kernel"},
-                 {.name = "spread", .value = mu_.spread(), .description = "weighted standard deviation of mu_MC"},
-                 {.name = "relative_spread",
-                  .value = mu_.spread() / mu_.mean(),
-                  .description = "spread/mean: 0 at incipient yield everywhere"}};
-    for (int percent : {5, 25, 50, 75, 95})
-      t.numbers.push_back({.name = "quantile_" + std::to_string(percent),
-                           .value = mu_.quantile(percent / 100.0),
-                           .description = std::to_string(percent) + " % of the weight lies below"});
-    t.numbers.push_back({.name = "undefined_share",
-                         .value = 1 - mu_.weight() / offered_,
-                         .description = "weight of voxels without mu_MC: tensile, or hardly any pressure"});
-    t.numbers.push_back({.name = "outside_share",
-                         .value = ratio_.outside(),
-                         .description = "weight beyond mu_max, which no bin shows but mean and spread hold"});
-    if (mu_.size() == 0) t.remarks.emplace_back("No voxel has a Mohr-Coulomb ratio and a weight.");
+    t.columns = {
+        {"mu_mohr_coulomb", dimension::none, "middle of the bin", ratio_.histogram().centres()},
+        {"density", dimension::none, "share of the weight by width of the bin", ratio_.histogram().densities()}};
+    t.numbers = ratio_.numbers("mu_MC");
+    t.numbers.push_back({.name = "relative_spread",
+                         .value = ratio_.spread() / ratio_.mean(),
+                         .description = "spread/mean: 0 at incipient yield everywhere"});
+    if (ratio_.empty()) t.remarks.emplace_back("No voxel has a Mohr-Coulomb ratio and a weight.");
     return t;
   }
 
@@ -85,30 +64,25 @@ class IncipientYield : public Measurement {
     Table t{.name = "principal_deviator",
             .description = "distribution of the principal stresses after the background pressure is taken off",
             .equation = "(p_k - P)/P, P = (p1 + p2 + p3)/3, compression positive"};
-    t.columns = {{"deviator", dimension::none, "middle of the bin", deviators_[0].centres()}};
+    t.columns = {{"deviator", dimension::none, "middle of the bin", deviators_[0].histogram().centres()}};
     const char* const names[] = {"least", "middle", "most"};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::string name = names[k];
-      t.columns.push_back(
-          {name, dimension::none, "density of the " + name + " compressive", deviators_[k].densities()});
-      t.numbers.push_back({.name = name + "_mean",
-                           .value = deviator_[k].mean(),
-                           .error = deviator_[k].mean_error(independence_),
-                           .description = "weighted mean of the " + name + " compressive"});
-      t.numbers.push_back(
-          {.name = name + "_spread", .value = deviator_[k].spread(), .description = "its weighted standard deviation"});
+      const std::string what = "the " + name + " compressive";
+      const Distribution& deviator = deviators_[k];
+      t.columns.push_back({name, dimension::none, "density of " + what, deviator.histogram().densities()});
+      for (Quantity q : {deviator.mean_of(what), deviator.spread_of(what)}) {
+        q.name = name + "_" + q.name;
+        t.numbers.push_back(std::move(q));
+      }
     }
     return t;
   }
 
   std::string weight_;
   double least_phi_;
-  double independence_;
-  Histogram ratio_;
-  std::vector<Histogram> deviators_;
-  WeightedSample mu_;
-  std::vector<WeightedSample> deviator_;
-  double offered_ = 0;  // the weight of all voxels, with and without a ratio
+  Distribution ratio_;
+  std::vector<Distribution> deviators_;
 };
 
 }  // namespace

@@ -4,11 +4,10 @@
 #include <optional>
 
 #include "grainvdb/run.hpp"
-#include "measure/histogram.hpp"
+#include "measure/distribution.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/streamlines.hpp"
 #include "measure/voxel_values.hpp"
-#include "measure/weighted_sample.hpp"
 
 namespace grainvdb {
 namespace {
@@ -43,8 +42,8 @@ class StochasticFlowRule : public Measurement {
       : lattice_(setting.lattice),
         box_(setting.box),
         least_phi_(number(setting.options, "phi_min")),
-        independence_(independence(setting.lattice.voxel(), setting.kernel)),
-        histogram_(0, std::numbers::pi, static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("bins")))),
+        angles_(0, std::numbers::pi, static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("bins"))),
+                independence(setting.lattice.voxel(), setting.kernel)),
         starts_(starts_of(setting.options)),
         length_(number(setting.options, "length") > 0 ? number(setting.options, "length")
                                                       : 10 * setting.kernel.cutoff()) {
@@ -71,12 +70,8 @@ class StochasticFlowRule : public Measurement {
                      drift[0] * velocity[1] - drift[1] * velocity[0]};
     const double against = -(drift[0] * velocity[0] + drift[1] * velocity[1] + drift[2] * velocity[2]);
     const double speed = std::hypot(velocity[0], velocity[1], velocity[2]);
-    if (std::isnan(speed)) return;
-    offered_ += speed;
-    if (!(std::hypot(drift[0], drift[1], drift[2]) > 0)) return;
-    const double angle = std::atan2(std::hypot(cross[0], cross[1], cross[2]), against);
-    histogram_.add(angle, speed);
-    angles_.add(angle, speed);
+    const bool has_drift = std::hypot(drift[0], drift[1], drift[2]) > 0;
+    angles_.add(has_drift ? std::atan2(std::hypot(cross[0], cross[1], cross[2]), against) : std::nan(""), speed);
   }
 
   void follow(const SparseField& drift) {
@@ -113,31 +108,20 @@ class StochasticFlowRule : public Measurement {
     Table t{.name = "stochastic_flow_rule",
             .description = "distribution of the angle between the velocity and the way opposite to the drift of spots",
             .equation = "acos(-u.D1/(|u| |D1|)), weight |u|; random directions: density sin(angle)/2"};
-    t.columns = {
-        {"angle", dimension::none, "middle of the bin [rad]", histogram_.centres()},
-        {"density", dimension::none, "share of the weight by width of the bin [1/rad]", histogram_.densities()}};
-    t.numbers = {{.name = "mean",
-                  .value = angles_.mean(),
-                  .error = angles_.mean_error(independence_),
-                  .description = "weighted mean angle [rad]: 0 by the rule, pi/2 for random directions"},
-                 {.name = "spread", .value = angles_.spread(), .description = "weighted standard deviation [rad]"},
-                 {.name = "median", .value = angles_.quantile(0.5), .description = "half the weight lies below [rad]"},
-                 {.name = "undefined_share",
-                  .value = 1 - angles_.weight() / offered_,
-                  .description = "weight of voxels without a drift"}};
-    if (angles_.size() == 0) t.remarks.emplace_back("No voxel has both a velocity and a drift of spots.");
+    t.columns = {{"angle", dimension::none, "middle of the bin [rad]", angles_.histogram().centres()},
+                 {"density", dimension::none, "share of the weight by width of the bin [1/rad]",
+                  angles_.histogram().densities()}};
+    t.numbers = angles_.numbers("the angle [rad], 0 by the rule, pi/2 in the mean for random directions");
+    if (angles_.empty()) t.remarks.emplace_back("No voxel has both a velocity and a drift of spots.");
     return t;
   }
 
   Lattice lattice_;
   Box box_;
   double least_phi_;
-  double independence_;
-  Histogram histogram_;
+  Distribution angles_;
   std::vector<Vec3> starts_;
   double length_;
-  WeightedSample angles_;
-  double offered_ = 0;
   Table lines_;
   std::size_t outputs_ = 0;
 };

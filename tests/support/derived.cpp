@@ -285,29 +285,25 @@ void central_gradient(Voxel& v, const VoxelBox& box, const std::vector<bool>& ac
   }
 }
 
-/// From the slip lines s, the density and the gradient of the mean extreme stress, which stands where the drift is to
-/// be: -Σ s s·(ρ g - (1 - (s·s')²) ∇p), sin φ_f = s·s'.
+/// -Σ s s·(ρ g - (1 - (s·s')²) ∇p) over the slip lines s, s'; ∇p stands where the drift is to be.
 void drift(Voxel& v, const Pipeline& p) {
   const auto& gravity = option<std::vector<double>>(p.stages, "spot_drift", "gravity");
   Uncertain sine;
   for (int a = 0; a < 3; ++a) sine = sine + v.get("slip_lines", a) * v.get("slip_lines", 3 + a);
   std::array<Uncertain, 3> force;
   Verdict missing{false, true};
-  for (int a = 0; a < 3; ++a) {
-    const Uncertain gradient = v.get("spot_drift", a);
-    missing.yes = missing.yes || gradient.undefined() || v.get("slip_lines", a).undefined();
-    missing.sure = missing.sure && !is_in_doubt(gradient) && !is_in_doubt(v.get("slip_lines", a));
-    force[static_cast<std::size_t>(a)] =
-        gravity[static_cast<std::size_t>(a)] * v.get("density") - (Uncertain{1, 0} - sine * sine) * gradient;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Uncertain gradient = v.get("spot_drift", static_cast<int>(a));
+    const Verdict without = any_undefined(gradient, sine);
+    missing = {missing.yes || without.yes, missing.sure && without.sure};
+    force[a] = gravity[a] * v.get("density") - (Uncertain{1, 0} - sine * sine) * gradient;
   }
   std::array<Uncertain, 3> sum{};
   for (int line : {0, 3}) {
     Uncertain along;
     for (int a = 0; a < 3; ++a) along = along + v.get("slip_lines", line + a) * force[static_cast<std::size_t>(a)];
-    for (int a = 0; a < 3; ++a) {
-      Uncertain& s = sum[static_cast<std::size_t>(a)];
-      s = s - along * v.get("slip_lines", line + a);
-    }
+    for (int a = 0; a < 3; ++a)
+      sum[static_cast<std::size_t>(a)] = sum[static_cast<std::size_t>(a)] - along * v.get("slip_lines", line + a);
   }
   for (int a = 0; a < 3; ++a)
     v.put("spot_drift", a, unless({{missing.yes, missing.yes || missing.sure}}, sum[static_cast<std::size_t>(a)]));
