@@ -4,4 +4,8 @@
 
 #include "grainvdb/measurement.hpp"
 
-namespace grainvdb {}  // namespace grainvdb
+namespace grainvdb {
+
+std::vector<MeasurementInfo> structure_measurements();
+
+}  // namespace grainvdb
