@@ -52,10 +52,9 @@ double double_cap(double r, double a, double b) {
 /// Beyond three planes at right angles, a² + b² + c² < r².
 double triple_cap(double r, double a, double b, double c) {
   const double sa = root(r * r - a * a), sb = root(r * r - b * b), sc = root(r * r - c * c);
-  const double area =
-      r * (r * (corner_angle(r, a, b) + corner_angle(r, b, c) + corner_angle(r, c, a) - pi) -
-           a * (arc_cos(b / sa) - arc_sin(c / sa)) - b * (arc_cos(c / sb) - arc_sin(a / sb)) -
-           c * (arc_cos(a / sc) - arc_sin(b / sc)));
+  const double area = r * (r * (corner_angle(r, a, b) + corner_angle(r, b, c) + corner_angle(r, c, a) - pi) -
+                           a * (arc_cos(b / sa) - arc_sin(c / sa)) - b * (arc_cos(c / sb) - arc_sin(a / sb)) -
+                           c * (arc_cos(a / sc) - arc_sin(b / sc)));
   return (r * area - a * corner_of_disc(sa, b, c) - b * corner_of_disc(sb, c, a) - c * corner_of_disc(sc, a, b)) / 3;
 }
 

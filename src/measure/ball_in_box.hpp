@@ -4,12 +4,14 @@
 
 namespace grainvdb {
 
-/// Distances ≥ 0 from a point inside a box to its six faces, lower and upper of each axis; infinity where there is none.
+/// Distances ≥ 0 from a point inside a box to its six faces, lower and upper of each axis; infinity where there is
+/// none.
 using FaceDistances = std::array<std::array<double, 2>, 3>;
 
 /// Volume of the ball of radius r about the point that lies inside the box, in closed form.
 ///
-/// With the six caps beyond the faces, the twelve double caps beyond two of them and the eight triple caps beyond three,
+/// With the six caps beyond the faces, the twelve double caps beyond two of them and the eight triple caps beyond
+/// three,
 ///
 ///     V = 4/3 π r³ - Σ V₁(a) + Σ V₂(a,b) - Σ V₃(a,b,c),
 ///

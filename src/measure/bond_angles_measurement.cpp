@@ -1,6 +1,6 @@
-#include <algorithm>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "measure/contact_graph.hpp"
 #include "measure/counted_region.hpp"
@@ -76,7 +76,9 @@ MeasurementInfo bond_angles_measurement() {
         .maximum = 1e6}});
   info.conflict = CountedRegion::conflict;
   info.needs = [](const OptionValues&) { return MeasurementNeeds{ColumnSet(Column::radius), {}}; };
-  info.make = [](const MeasurementSetting& setting) { return std::make_unique<BondAnglesMeasurement>(setting.options); };
+  info.make = [](const MeasurementSetting& setting) {
+    return std::make_unique<BondAnglesMeasurement>(setting.options);
+  };
   return info;
 }
 

@@ -49,9 +49,9 @@ CellGrid::CellGrid(const Box& box, const Columns3& position, double reach) : box
   std::vector<std::uint32_t> cell(n);
   start_.assign(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]) + 1, 0);
   for (std::size_t i = 0; i < n; ++i) {
-    cell[i] = static_cast<std::uint32_t>(
-        (cell_along(0, wrapped[0][i]) * count_[1] + cell_along(1, wrapped[1][i])) * count_[2] +
-        cell_along(2, wrapped[2][i]));
+    cell[i] = static_cast<std::uint32_t>((cell_along(0, wrapped[0][i]) * count_[1] + cell_along(1, wrapped[1][i])) *
+                                             count_[2] +
+                                         cell_along(2, wrapped[2][i]));
     ++start_[cell[i] + 1];
   }
   for (std::size_t c = 1; c < start_.size(); ++c) start_[c] += start_[c - 1];

@@ -27,8 +27,8 @@ ContactGraph contacts_by_gap(const Box& box, const Columns3& position, const std
 /// The contacts of a dump. Those with grains that are not among the particles count for the one that is.
 ContactGraph contacts_of_dump(const Particles& particles, const Contacts& contacts);
 
-/// Which grains remain when those with fewer than `least` contacts are taken out, and then those that have fewer without
-/// them, until none has (the `least`-core of the graph). Grains outside stay.
+/// Which grains remain when those with fewer than `least` contacts are taken out, and then those that have fewer
+/// without them, until none has (the `least`-core of the graph). Grains outside stay.
 std::vector<bool> backbone(const ContactGraph& graph, std::size_t least);
 
 /// Angles between pairs of contacts of one grain, in equal bins of 0 … π.

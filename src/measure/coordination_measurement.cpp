@@ -1,5 +1,8 @@
 #include <cmath>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "measure/contact_graph.hpp"
 #include "measure/counted_region.hpp"
@@ -58,20 +61,21 @@ class Coordination : public Measurement {
     const double rattlers = 1 - kept_ / grains;
     // Of the grains of one frame: in later frames they are mostly the same.
     const double independent = grains / frames_;
-    table.numbers = {{.name = "coordination",
-                      .value = mean,
-                      .error = std::sqrt((squares / grains - mean * mean) / independent),
-                      .dimension = dimension::none,
-                      .description = "mean number of contacts of a grain"},
-                     {.name = "rattlers",
-                      .value = rattlers,
-                      .error = std::sqrt(rattlers * (1 - rattlers) / independent),
-                      .dimension = dimension::none,
-                      .description = "share of the grains that too few others hold, those that rest on such grains included"},
-                     {.name = "coordination_backbone",
-                      .value = kept_contacts_ / kept_,
-                      .dimension = dimension::none,
-                      .description = "mean number of contacts among the grains that are no rattlers"}};
+    table.numbers = {
+        {.name = "coordination",
+         .value = mean,
+         .error = std::sqrt((squares / grains - mean * mean) / independent),
+         .dimension = dimension::none,
+         .description = "mean number of contacts of a grain"},
+        {.name = "rattlers",
+         .value = rattlers,
+         .error = std::sqrt(rattlers * (1 - rattlers) / independent),
+         .dimension = dimension::none,
+         .description = "share of the grains that too few others hold, those that rest on such grains included"},
+        {.name = "coordination_backbone",
+         .value = kept_contacts_ / kept_,
+         .dimension = dimension::none,
+         .description = "mean number of contacts among the grains that are no rattlers"}};
     table.columns = {std::move(contacts), std::move(share)};
     return {table};
   }
@@ -107,7 +111,8 @@ MeasurementInfo coordination_measurement() {
         .choices = {"gap", "dump"}},
        {.name = "gap",
         .default_value = 0.0,
-        .help = "greatest distance between the surfaces of grains that touch [length]; 0: a hundredth of the mean diameter",
+        .help =
+            "greatest distance between the surfaces of grains that touch [length]; 0: a hundredth of the mean diameter",
         .minimum = 0},
        {.name = "rattlers_below",
         .default_value = std::int64_t{2},

@@ -1,7 +1,7 @@
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "measure/counted_region.hpp"
 #include "measure/dispersion.hpp"
@@ -38,11 +38,13 @@ class Diffusion : public Measurement {
     table.columns = {std::move(time), std::move(travelled)};
     for (std::size_t a = 0; a < 3; ++a) add_axis(table, a);
     table.columns.push_back(std::move(grains));
-    if (dispersion_.lags() == 0) table.remarks.emplace_back("No grain could be followed from one frame to the next.");
+    if (dispersion_.lags() == 0 || dispersion_.grains(0) == 0)
+      table.remarks.emplace_back("No grain could be followed from one frame to the next.");
     if (dispersion_.refused_steps() > 0)
-      table.remarks.push_back(std::to_string(dispersion_.refused_steps()) +
-                              " steps between frames were refused: a grain may have moved by more than half of a periodic "
-                              "length, so that its nearest image need not be it. Take frames nearer to each other.");
+      table.remarks.push_back(
+          std::to_string(dispersion_.refused_steps()) +
+          " steps between frames were refused: a grain may have moved by more than half of a periodic "
+          "length, so that its nearest image need not be it. Take frames nearer to each other.");
     return {table};
   }
 
@@ -89,7 +91,8 @@ MeasurementInfo diffusion_measurement() {
   std::vector<OptionInfo> own{
       {.name = "lags",
        .default_value = std::int64_t{0},
-       .help = "steps between frames in a window; grains are followed from the first frame of each. 0: one window of all",
+       .help =
+           "steps between frames in a window; grains are followed from the first frame of each. 0: one window of all",
        .minimum = 0,
        .maximum = 1e6},
       {.name = "fit_from",

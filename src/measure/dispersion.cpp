@@ -74,8 +74,8 @@ bool Dispersion::is_too_long(const Frame& frame) const {
   if (!frame.time || !last_time_ || velocity[0].empty() || !has_speeds_) return false;
   const double dt = std::abs(*frame.time - *last_time_);
   for (std::size_t a = 0; a < 3; ++a)
-    if (frame.box.periodic[a] && dt * std::max(last_speeds_[a], largest_magnitude(velocity[a])) >
-                                     0.5 * frame.box.length(static_cast<int>(a)))
+    if (frame.box.periodic[a] &&
+        dt * std::max(last_speeds_[a], largest_magnitude(velocity[a])) > 0.5 * frame.box.length(static_cast<int>(a)))
       return true;
   return false;
 }

@@ -18,9 +18,9 @@ struct Estimate {
   double error = 0;
 };
 
-/// Displacements of the grains that are in the counted region when a window of frames begins and are there in each frame
-/// since. They are sums of steps between successive frames, each by its nearest image, so that grains may cross periodic
-/// boundaries any number of times.
+/// Displacements of the grains that are in the counted region when a window of frames begins and are there in each
+/// frame since. They are sums of steps between successive frames, each by its nearest image, so that grains may cross
+/// periodic boundaries any number of times.
 class Dispersion {
  public:
   /// Windows have `lags` steps, then the next begins; 0: one window of all frames.
@@ -41,9 +41,9 @@ class Dispersion {
   double variance(std::size_t k, std::size_t axis) const { return variance(k, axis, Slabs::count); }
 
   enum class Against { time, travelled };
-  /// Half the slope of the variance against time, or against the way travelled: the diffusivity D [length²/time], or the
-  /// diffusion length b [length]. A least-squares line with an intercept, for steps that are not yet independent, through
-  /// the lags that begin `from` [time]; through the origin where there is only one. NaN where there is none.
+  /// Half the slope of the variance against time, or against the way travelled: the diffusivity D [length²/time], or
+  /// the diffusion length b [length]. A least-squares line with an intercept, for steps that are not yet independent,
+  /// through the lags that begin `from` [time]; through the origin where there is only one. NaN where there is none.
   Estimate diffusivity(std::size_t axis, Against against, double from) const;
 
  private:

@@ -1,6 +1,5 @@
 #include "measure/fluctuations.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 

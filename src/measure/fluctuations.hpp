@@ -8,8 +8,8 @@
 namespace grainvdb {
 
 /// The mean motion that is taken off, the same for velocities and displacements:
-/// mean: that of all grains; linear: the least-squares fit u₀ + L x to all, as in the boxes of the talks; layers: the mean
-/// of each layer of a thickness [length] across an axis.
+/// mean: that of all grains; linear: the least-squares fit u₀ + L x to all, as in the boxes of the talks; layers: the
+/// mean of each layer of a thickness [length] across an axis.
 struct MeanMotion {
   enum class Kind { mean, linear, layers };
   Kind kind = Kind::mean;

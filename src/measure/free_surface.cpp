@@ -1,5 +1,6 @@
 #include "measure/free_surface.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -68,7 +69,8 @@ SurfacePlane FreeSurface::plane() const {
   }
   // dα = (s·ds)/(|s| (1 + s²)); without a slope its direction is any, and the mean over directions is taken.
   const double steepness = s.norm();
-  const double along = steepness > 0 ? s.dot(c * s) / (steepness * steepness) : c.trace() / static_cast<double>(s.size());
+  const double along =
+      steepness > 0 ? s.dot(c * s) / (steepness * steepness) : c.trace() / static_cast<double>(s.size());
   result.angle = std::atan(steepness);
   result.angle_error = std::sqrt(along) / (1 + steepness * steepness);
   return result;

@@ -14,10 +14,10 @@ namespace grainvdb {
 /// A plane h = h₀ + s₀ x₀ + s₁ x₁ over the two horizontal axes, fitted by least squares. Along periodic axes, where the
 /// surface can have no slope in the mean, s = 0 is not fitted.
 struct SurfacePlane {
-  double height = 0, height_error = 0;            ///< in the middle of the columns [length]
-  std::array<double, 2> slope{}, slope_error{};   ///< along the horizontal axes, in cyclic order after the vertical one
-  double angle = 0, angle_error = 0;              ///< atan √(s₀² + s₁²), from the horizontal [rad]
-  double roughness = 0;                           ///< standard deviation of the tops about the plane [length]
+  double height = 0, height_error = 0;           ///< in the middle of the columns [length]
+  std::array<double, 2> slope{}, slope_error{};  ///< along the horizontal axes, in cyclic order after the vertical one
+  double angle = 0, angle_error = 0;             ///< atan √(s₀² + s₁²), from the horizontal [rad]
+  double roughness = 0;                          ///< standard deviation of the tops about the plane [length]
   std::size_t columns = 0;
 };
 

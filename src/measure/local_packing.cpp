@@ -62,9 +62,8 @@ std::vector<double> kernel_packing(const Box& box, const Columns3& position, con
   if (radius.empty()) return phi;
   const CellGrid grid(box, position, kernel.cutoff());
   for (std::size_t i = 0; i < phi.size(); ++i)
-    grid.around(grid.position(i), [&](std::size_t j, const Vec3&, double r2) {
-      phi[i] += sphere_volume(radius[j]) * kernel.value(r2);
-    });
+    grid.around(grid.position(i),
+                [&](std::size_t j, const Vec3&, double r2) { phi[i] += sphere_volume(radius[j]) * kernel.value(r2); });
   return phi;
 }
 

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "measure/frame_series.hpp"
 #include "measure/overlaps.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "base/parallel.hpp"
 #include "measure/ball_in_box.hpp"
@@ -45,8 +44,7 @@ void add_shells(const PairCounts& counts, const FaceDistances& faces, std::vecto
 
 }  // namespace
 
-PairCounts::PairCounts(double reach, std::size_t bins)
-    : reach_(reach), pairs_(bins), squares_(bins), expected_(bins) {}
+PairCounts::PairCounts(double reach, std::size_t bins) : reach_(reach), pairs_(bins), squares_(bins), expected_(bins) {}
 
 void PairCounts::add(const Box& box, const Columns3& position, const CountedRegion& region) {
   ++frames_;

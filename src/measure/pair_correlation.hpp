@@ -15,8 +15,8 @@ namespace grainvdb {
 ///
 /// n_ik the grains in shell k about grain i, V_ik the volume of the shell that lies within the material, exactly, ρ the
 /// density of the other N-1 counted grains in the volume V of the counted region. Each pair counts once, by its
-/// nearest image: along periodic axes shells end half a period away, along others at the outermost centres. The mean for
-/// grains spread uniformly is thus 1 at any distance, in a periodic box, a slab or a closed box.
+/// nearest image: along periodic axes shells end half a period away, along others at the outermost centres. The mean
+/// for grains spread uniformly is thus 1 at any distance, in a periodic box, a slab or a closed box.
 class PairCounts {
  public:
   PairCounts(double reach, std::size_t bins);

@@ -1,4 +1,5 @@
 #include <optional>
+#include <utility>
 
 #include "measure/counted_region.hpp"
 #include "measure/grains.hpp"
@@ -76,15 +77,16 @@ MeasurementInfo pair_correlation_measurement() {
   info.name = "pair_correlation";
   info.description = "radial distribution function g(r), exact for periodic boxes, slabs and closed boxes";
   info.equation = "g(r) = sum_i n_i(r)/sum_i rho V_i(r)";
-  info.options = CountedRegion::options({{.name = "reach",
-                                          .default_value = 0.0,
-                                          .help = "greatest distance [length]; 0: five mean diameters of the first frame",
-                                          .minimum = 0},
-                                         {.name = "bins",
-                                          .default_value = std::int64_t{200},
-                                          .help = "number of equal bins of distance",
-                                          .minimum = 1,
-                                          .maximum = 1e6}});
+  info.options =
+      CountedRegion::options({{.name = "reach",
+                               .default_value = 0.0,
+                               .help = "greatest distance [length]; 0: five mean diameters of the first frame",
+                               .minimum = 0},
+                              {.name = "bins",
+                               .default_value = std::int64_t{200},
+                               .help = "number of equal bins of distance",
+                               .minimum = 1,
+                               .maximum = 1e6}});
   info.conflict = CountedRegion::conflict;
   info.needs = [](const OptionValues&) { return MeasurementNeeds{ColumnSet(Column::radius), {}}; };
   info.make = [](const MeasurementSetting& setting) { return std::make_unique<PairCorrelation>(setting.options); };

@@ -5,8 +5,8 @@
 namespace grainvdb {
 
 std::vector<MeasurementInfo> structure_measurements() {
-  return {pair_correlation_measurement(), bond_angles_measurement(), coordination_measurement(),
-          overlap_measurement(),          voronoi_measurement(),     velocity_correlation_measurement(),
+  return {pair_correlation_measurement(), bond_angles_measurement(),  coordination_measurement(),
+          overlap_measurement(),          voronoi_measurement(),      velocity_correlation_measurement(),
           diffusion_measurement(),        surface_angle_measurement()};
 }
 

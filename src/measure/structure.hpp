@@ -1,5 +1,6 @@
 #pragma once
-/// The measurements of packing structure and of how grains move among each other. docs/structure.md tells what they mean.
+/// The measurements of packing structure and of how grains move among each other. docs/structure.md tells what they
+/// mean.
 #include "grainvdb/measurement.hpp"
 
 namespace grainvdb {

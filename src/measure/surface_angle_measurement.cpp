@@ -2,6 +2,8 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "measure/counted_region.hpp"
 #include "measure/frame_series.hpp"
@@ -12,7 +14,7 @@
 namespace grainvdb {
 namespace {
 
-constexpr double default_column = 2;    // mean diameters
+constexpr double default_column = 2;  // mean diameters
 constexpr double neighbourhood = 1.5;
 constexpr double degrees = 180 / std::numbers::pi;
 

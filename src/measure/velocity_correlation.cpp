@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "measure/cell_grid.hpp"
 #include "measure/grains.hpp"

@@ -39,12 +39,12 @@ class VelocityCorrelation {
   std::array<std::vector<Sums>, Slabs::count> slabs_;
 };
 
-/// 1 - 3r/4R + r³/16R³ for r < 2R, else 0: the common part of two balls of radius R at a distance r. It is C(r) of grains
-/// each of which follows the mean of all spots within R of it, spots that move independently of each other.
+/// 1 - 3r/4R + r³/16R³ for r < 2R, else 0: the common part of two balls of radius R at a distance r. It is C(r) of
+/// grains each of which follows the mean of all spots within R of it, spots that move independently of each other.
 double sphere_law(double r, double radius);
 
-/// The fit of A (1 - 3r/4R + r³/16R³) by least squares (Levenberg and Marquardt); NaN where it has fewer than three points
-/// or comes to no end.
+/// The fit of A (1 - 3r/4R + r³/16R³) by least squares (Levenberg and Marquardt); NaN where it has fewer than three
+/// points or comes to no end.
 struct SphereFit {
   double amplitude = 0;
   double radius = 0;  ///< [length]

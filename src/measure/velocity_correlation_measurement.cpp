@@ -1,6 +1,7 @@
 #include <cmath>
-#include <iterator>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "measure/counted_region.hpp"
 #include "measure/fluctuations.hpp"

@@ -15,8 +15,8 @@ struct VoronoiCells {
 };
 
 /// The power (radical) tessellation of the box: grain i has the places x where |x - x_i|² - r_i² is least, which for
-/// equal radii are those nearest to it, and for touching spheres the plane between two is their tangent plane. Cells end
-/// at the faces of axes that are not periodic.
+/// equal radii are those nearest to it, and for touching spheres the plane between two is their tangent plane. Cells
+/// end at the faces of axes that are not periodic.
 ///
 /// What voro++ would end the process for must be ruled out before: centres must be finite and lie in the box along axes
 /// that are not periodic, there must be no coincident_pair, and fewer than 2³¹ grains.

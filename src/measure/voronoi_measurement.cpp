@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "grainvdb/error.hpp"
 #include "grainvdb/moment.hpp"
@@ -37,7 +38,8 @@ Inside inside(const Frame& frame) {
   return in;
 }
 
-/// Middles of windows a radius apart that lie wholly within a box; anywhere along an axis that it fills with its period.
+/// Middles of windows a radius apart that lie wholly within a box; anywhere along an axis that it fills with its
+/// period.
 std::vector<double> middles(const Box& box, const Box& counted, std::size_t axis, double radius) {
   const int a = static_cast<int>(axis);
   const bool around = box.periodic[axis] && counted.length(a) >= box.length(a);
@@ -61,11 +63,12 @@ class Voronoi : public Measurement {
     left_out_ += frame.particles.size() - grains.radius.size();
     if (grains.radius.empty()) return;
     if (const auto pair = coincident_pair(frame.box, grains.position, grains.radius))
-      throw InputError({{frame.file},
-                        "two grains at one place have no Voronoi cells",
-                        "ids " + std::to_string(grains.id[pair->first]) + " and " + std::to_string(grains.id[pair->second]),
-                        "centres at least 1e-6 diameters apart",
-                        "Leave one of them out with select, or do without measure.voronoi"});
+      throw InputError(
+          {{frame.file},
+           "two grains at one place have no Voronoi cells",
+           "ids " + std::to_string(grains.id[pair->first]) + " and " + std::to_string(grains.id[pair->second]),
+           "centres at least 1e-6 diameters apart",
+           "Leave one of them out with select, or do without measure.voronoi"});
     if (!(window_ > 0)) window_ = length_option(options_, "window", default_window, mean_diameter(grains.radius));
     const VoronoiCells cells = voronoi_cells(frame.box, grains.position, grains.radius);
     const LocalPacking packing(frame.box, grains.position, grains.radius, cells, window_);
@@ -85,9 +88,7 @@ class Voronoi : public Measurement {
     add_windows(frame.box, packing, region_.within(frame.box, grains.position));
   }
 
-  std::vector<Table> tables() override {
-    return {cells_table(), windows_table()};
-  }
+  std::vector<Table> tables() override { return {cells_table(), windows_table()}; }
 
  private:
   void add_windows(const Box& box, const LocalPacking& packing, const Box& counted) {
@@ -141,7 +142,8 @@ class Voronoi : public Measurement {
     table.numbers.push_back({.name = "at_faces",
                              .value = not_enclosed_ / all,
                              .description = "share of the grains whose cell ends at a face of the box: left out"});
-    if (cell_.count() == 0) table.remarks.emplace_back("No grain that counts has a cell that ends at other grains alone.");
+    if (cell_.count() == 0)
+      table.remarks.emplace_back("No grain that counts has a cell that ends at other grains alone.");
     if (left_out_ > 0)
       table.remarks.push_back(std::to_string(left_out_) +
                               " times a grain lay outside the box along an axis that is not periodic: it has no cell.");
