@@ -2,8 +2,6 @@
 #include "measure/pair_correlation.hpp"
 
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -56,35 +54,53 @@ TEST(PairCorrelation, CountsEachPairOnceInBoxesNarrowerThanItsReach) {
   EXPECT_DOUBLE_EQ(counts.neighbours(99), 63);
 }
 
-/// χ² of g about 1 over its bins; the sum of squares of unit normals has mean n and variance 2n.
-void expect_uniform(const Box& box, std::size_t n, const CountedRegion& counted, double reach) {
-  PairCounts counts(reach, 24);
-  for (std::uint64_t seed = 0; seed < 4; ++seed) counts.add(box, poisson(box, n, 40 + seed).position, counted);
-  double chi2 = 0, bins = 0, mean = 0, variance = 0;
+const auto boxed = [](bool x, bool y, bool z) { return Box{{0, 0, 0}, {9, 7, 8}, {x, y, z}}; };
+
+TEST(PairCorrelation, ScattersAboutOneAsStatedForRandomPlacesInAPeriodicBox) {
+  // To 6, far beyond half the box, where only its corners are left.
+  PairCounts counts(6, 24);
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const Scene s = poisson(boxed(true, true, true), 600, 40 + seed);
+    counts.add(s.box, s.position, {});
+  }
+  double chi2 = 0, bins = 0;
   for (std::size_t k = 0; k < counts.bins(); ++k) {
     if (!(counts.error(k) < 0.3)) continue;  // few pairs are not normally distributed
     ++bins;
     chi2 += std::pow((counts.g(k) - 1) / counts.error(k), 2);
-    mean += (counts.g(k) - 1) / std::pow(counts.error(k), 2);
-    variance += 1 / std::pow(counts.error(k), 2);
   }
-  ASSERT_GT(bins, 15);
+  ASSERT_GT(bins, 20);
+  // The sum of the squares of n unit normals is n ± √(2n).
   EXPECT_NEAR(chi2, bins, 4 * std::sqrt(2 * bins));
-  EXPECT_LT(std::abs(mean / variance), 4 / std::sqrt(variance)) << "g is not 1 on average";
 }
 
-TEST(PairCorrelation, IsOneForGrainsAtRandomPlaces) {
-  const auto boxed = [](bool x, bool y, bool z) { return Box{{0, 0, 0}, {9, 7, 8}, {x, y, z}}; };
-  expect_uniform(boxed(true, true, true), 600, {}, 3);
-  // Far beyond half the box, where only its corners are left.
-  expect_uniform(boxed(true, true, true), 600, {}, 6);
-  expect_uniform(boxed(true, false, true), 600, {}, 6);
-  expect_uniform(boxed(false, false, false), 600, {}, 9);
+/// The mean of g over packings is 1 within 4.5 of its standard errors, which their scatter gives: near open faces the
+/// number of pairs also depends on how many grains lie there, so that it scatters more than counting.
+void expect_one_on_average(const Box& box, std::size_t n, const CountedRegion& counted, double reach) {
+  constexpr std::size_t runs = 24, bins = 12;
+  std::vector<double> sum(bins), squares(bins);
+  for (std::size_t run = 0; run < runs; ++run) {
+    PairCounts counts(reach, bins);
+    counts.add(box, poisson(box, n, 400 + run).position, counted);
+    for (std::size_t k = 0; k < bins; ++k) {
+      sum[k] += counts.g(k) - 1;
+      squares[k] += std::pow(counts.g(k) - 1, 2);
+    }
+  }
+  for (std::size_t k = 0; k < bins; ++k) {
+    const double mean = sum[k] / runs, error = std::sqrt((squares[k] / runs - mean * mean) / (runs - 1));
+    EXPECT_LT(std::abs(mean), 4.5 * error) << "bin " << k;
+    EXPECT_LT(error, k == 0 ? 0.2 : 0.04) << "bin " << k;
+  }
+}
+
+TEST(PairCorrelation, IsOneForRandomPlacesBetweenFaces) {
+  expect_one_on_average(boxed(true, false, true), 600, {}, 6);
+  expect_one_on_average(boxed(false, false, false), 600, {}, 7);
 }
 
 TEST(PairCorrelation, IsOneInAPartOfTheMaterial) {
-  const Box box{{0, 0, 0}, {12, 8, 12}, {false, true, false}};
-  expect_uniform(box, 1500, region({1, -1e9, 2}, {5, 1e9, 9}), 5);
+  expect_one_on_average({{0, 0, 0}, {12, 8, 12}, {false, true, false}}, 1200, region({1, -1e9, 2}, {5, 1e9, 9}), 5);
 }
 
 TEST(PairCorrelation, IsTheSameHoweverFramesAreSplitAmongThem) {
