@@ -89,12 +89,12 @@ class CellGrid {
 };
 
 /// Whether r is the one image of a difference that counts where every pair counts once: within half a period of the
-/// box, -length/2 ≤ r < length/2, along each periodic axis.
+/// box, -length/2 ≤ r < length/2, along each periodic axis. Rounding at either end, as in crystals, does not change which.
 inline bool is_nearest_image(const Box& box, const Vec3& r) {
   for (std::size_t a = 0; a < 3; ++a) {
     if (!box.periodic[a]) continue;
-    const double half = 0.5 * box.length(static_cast<int>(a));
-    if (r[a] < -half || r[a] >= half) return false;
+    const double half = 0.5 * box.length(static_cast<int>(a)), hair = 1e-9 * half;
+    if (r[a] < -half - hair || r[a] >= half - hair) return false;
   }
   return true;
 }

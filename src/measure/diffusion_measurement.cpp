@@ -55,8 +55,8 @@ class Diffusion : public Measurement {
     for (std::size_t k = 0; k < dispersion_.lags(); ++k) variance.values.push_back(dispersion_.variance(k, a));
     table.columns.push_back(std::move(variance));
     const double from = std::get<double>(options_.at("fit_from"));
-    const Estimate by_time = dispersion_.diffusivity(a, Dispersion::Against::time, from);
-    const Estimate by_way = dispersion_.diffusivity(a, Dispersion::Against::travelled, from);
+    const Diffusivity by_time = dispersion_.diffusivity(a, Dispersion::Against::time, from);
+    const Diffusivity by_way = dispersion_.diffusivity(a, Dispersion::Against::travelled, from);
     const double peclet = diameter_ / by_way.value;
     table.numbers.push_back({.name = "diffusivity_" + axis,
                              .value = by_time.value,

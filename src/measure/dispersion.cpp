@@ -154,7 +154,7 @@ double Dispersion::half_slope(std::size_t axis, Against against, double from, st
   return 0.5 * slope(x, y);
 }
 
-Estimate Dispersion::diffusivity(std::size_t axis, Against against, double from) const {
+Diffusivity Dispersion::diffusivity(std::size_t axis, Against against, double from) const {
   std::vector<double> left_out;
   for (std::size_t slab = 0; slab < Slabs::count; ++slab)
     if (lags() > 0 && sums_[0].grains[slab] > 0) left_out.push_back(half_slope(axis, against, from, slab));

@@ -12,8 +12,8 @@
 
 namespace grainvdb {
 
-/// A number with its standard error.
-struct Estimate {
+/// Half the growth of a variance, with its standard error.
+struct Diffusivity {
   double value = 0;
   double error = 0;
 };
@@ -44,7 +44,7 @@ class Dispersion {
   /// Half the slope of the variance against time, or against the way travelled: the diffusivity D [length²/time], or
   /// the diffusion length b [length]. A least-squares line with an intercept, for steps that are not yet independent,
   /// through the lags that begin `from` [time]; through the origin where there is only one. NaN where there is none.
-  Estimate diffusivity(std::size_t axis, Against against, double from) const;
+  Diffusivity diffusivity(std::size_t axis, Against against, double from) const;
 
  private:
   struct Sums {

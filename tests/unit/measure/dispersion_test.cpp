@@ -53,8 +53,8 @@ TEST(Dispersion, FindsTheDiffusivityOfRandomWalkers) {
     EXPECT_NEAR(d.time(19), 20 * dt, 1e-12);
     EXPECT_NEAR(d.travelled(19), -drift * 20 * dt, 5 * step * std::sqrt(20.0 / 800));
     for (std::size_t a = 0; a < 3; ++a) {
-      const Estimate by_time = d.diffusivity(a, Dispersion::Against::time, 0);
-      const Estimate by_way = d.diffusivity(a, Dispersion::Against::travelled, 0);
+      const Diffusivity by_time = d.diffusivity(a, Dispersion::Against::time, 0);
+      const Diffusivity by_way = d.diffusivity(a, Dispersion::Against::travelled, 0);
       chi2 += std::pow((by_time.value - expected) / by_time.error, 2) / (3 * runs);
       length_chi2 += std::pow((by_way.value - expected / -drift) / by_way.error, 2) / (3 * runs);
       mean += by_time.value / (3 * runs);
