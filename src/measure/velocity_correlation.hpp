@@ -43,8 +43,8 @@ class VelocityCorrelation {
 /// grains each of which follows the mean of all spots within R of it, spots that move independently of each other.
 double sphere_law(double r, double radius);
 
-/// The fit of A (1 - 3r/4R + r³/16R³) by least squares (Levenberg and Marquardt); NaN where it has fewer than three
-/// points or comes to no end.
+/// The fit of A (1 - 3r/4R + r³/16R³) by least squares, all points alike; NaN where the data do not determine it (see
+/// least_squares), as of fewer than three points.
 struct SphereFit {
   double amplitude = 0;
   double radius = 0;  ///< [length]
