@@ -5,23 +5,15 @@
 #include <stdexcept>
 
 namespace grainvdb {
-namespace {
 
-/// Cells per axis: as many as fit, and in all not many more than points.
-std::array<std::int64_t, 3> cell_counts(const Vec3& length, double reach, std::size_t points) {
-  std::array<std::int64_t, 3> count{};
-  const double most = static_cast<double>(points) + 64;
-  for (double width = reach;; width *= 1.26) {
-    double cells = 1;
-    for (const double l : length) cells *= std::max(1.0, std::floor(l / width));
-    if (cells > most) continue;
-    for (std::size_t a = 0; a < 3; ++a)
-      count[a] = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor(length[a] / width)));
-    return count;
+std::array<std::int64_t, 3> cell_counts(const Vec3& length, double width, std::size_t most) {
+  for (;; width *= 1.26) {
+    std::array<double, 3> fit{};
+    for (std::size_t a = 0; a < 3; ++a) fit[a] = std::max(1.0, std::floor(length[a] / width));
+    if (fit[0] * fit[1] * fit[2] > static_cast<double>(most)) continue;
+    return {static_cast<std::int64_t>(fit[0]), static_cast<std::int64_t>(fit[1]), static_cast<std::int64_t>(fit[2])};
   }
 }
-
-}  // namespace
 
 CellGrid::CellGrid(const Box& box, const Columns3& position, double reach) : box_(box), reach_(reach) {
   const std::size_t n = position[0].size();
@@ -39,7 +31,7 @@ CellGrid::CellGrid(const Box& box, const Columns3& position, double reach) : box
     origin_[a] = box.periodic[a] || n == 0 ? box.lo[a] : *lo;
     length[a] = box.periodic[a] || n == 0 ? box.length(axis) : *hi - *lo;
   }
-  count_ = cell_counts(length, reach, n);
+  count_ = cell_counts(length, reach, n + 64);
   for (std::size_t a = 0; a < 3; ++a) width_[a] = length[a] / static_cast<double>(count_[a]);
 
   const auto cell_along = [&](std::size_t a, double x) {

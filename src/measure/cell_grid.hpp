@@ -12,7 +12,7 @@ namespace grainvdb {
 
 /// Points sorted into cells that are at least as wide as the search reaches. A search visits all periodic images within
 /// reach, in an order that depends on the points alone; for a reach that does not grow with their number its cost does
-/// not either. Memory: 28 bytes per point and at most 4 bytes per point of cells.
+/// not either. Memory: 32 bytes per point and 4 bytes per cell, of which there are not many more than points.
 class CellGrid {
  public:
   /// `reach` > 0 [length]; positions must be finite (std::invalid_argument otherwise).
@@ -88,8 +88,13 @@ class CellGrid {
   std::vector<Vec3> at_;              ///< of each slot
 };
 
+/// How many cells fit along each axis that are at least as wide as `width` [length], wider ones where there would be
+/// more than `most` ≥ 1 in all.
+std::array<std::int64_t, 3> cell_counts(const Vec3& length, double width, std::size_t most);
+
 /// Whether r is the one image of a difference that counts where every pair counts once: within half a period of the
-/// box, -length/2 ≤ r < length/2, along each periodic axis. Rounding at either end, as in crystals, does not change which.
+/// box, -length/2 ≤ r < length/2, along each periodic axis. Rounding at either end, as in crystals, does not change
+/// which.
 inline bool is_nearest_image(const Box& box, const Vec3& r) {
   for (std::size_t a = 0; a < 3; ++a) {
     if (!box.periodic[a]) continue;

@@ -31,10 +31,10 @@ VoronoiCells voronoi_cells(const Box& box, const Columns3& position, const std::
     volume *= length[a];
   }
   const double block = std::cbrt(volume * grains_per_block / static_cast<double>(n));
-  std::array<int, 3> blocks{};
-  for (std::size_t a = 0; a < 3; ++a) blocks[a] = static_cast<int>(std::clamp(length[a] / block, 1.0, 1024.0));
-  voro::container_poly container(0, length[0], 0, length[1], 0, length[2], blocks[0], blocks[1], blocks[2],
-                                 box.periodic[0], box.periodic[1], box.periodic[2], 8);
+  const auto blocks = cell_counts(length, block, n / 2 + 8);
+  voro::container_poly container(0, length[0], 0, length[1], 0, length[2], static_cast<int>(blocks[0]),
+                                 static_cast<int>(blocks[1]), static_cast<int>(blocks[2]), box.periodic[0],
+                                 box.periodic[1], box.periodic[2], 8);
   for (std::size_t i = 0; i < n; ++i) {
     Vec3 x{};
     for (std::size_t a = 0; a < 3; ++a) {

@@ -2,6 +2,7 @@
 #include "measure/cell_grid.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <tuple>
@@ -95,6 +96,15 @@ TEST(CellGrid, RefusesWhatHasNoPlace) {
   EXPECT_THROW(CellGrid(s.box, s.position, 0), std::invalid_argument);
   s.position[1][1] = std::nan("");
   EXPECT_THROW(CellGrid(s.box, s.position, 1), std::invalid_argument);
+}
+
+TEST(CellCounts, AreBoundedInNumberAndWidth) {
+  using Counts = std::array<std::int64_t, 3>;
+  EXPECT_EQ(cell_counts({10, 5.5, 0.1}, 1, 100), (Counts{10, 5, 1}));
+  EXPECT_EQ(cell_counts({0, 0, 0}, 1, 1), (Counts{1, 1, 1}));
+  const Counts few = cell_counts({1e9, 1, 1}, 1e-3, 70);
+  EXPECT_LE(few[0] * few[1] * few[2], 70);
+  EXPECT_GT(few[0], 50);
 }
 
 TEST(NearestImage, IsOneOfAll) {
