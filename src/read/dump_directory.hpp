@@ -46,8 +46,8 @@ class DumpDirectory final : public FrameSource {
   std::vector<FileIdentity> whole_files() const;
 
  private:
-  std::size_t find_contacts(std::int64_t step);
-  Contacts read_contacts(std::int64_t step);
+  std::size_t find_contacts(std::size_t frame);
+  Contacts read_contacts(std::size_t frame);
 
   InputSpec spec_;
   ReadCounters counters_;
