@@ -22,7 +22,11 @@ bool names_axes(std::string_view text) {
 
 [[noreturn]] void refuse_lack(const InputSpec& spec, const std::string& file, const std::string& what,
                               const std::string& expected) {
-  throw ConfigError({stated_at(spec, "input"), file + " does not say " + what, {}, expected, {}});
+  throw ConfigError({stated_at(spec, "input"),
+                     file + " does not say " + what,
+                     {},
+                     expected,
+                     "If that file is not meant, give the dumps as a pattern instead of a folder"});
 }
 
 void name_columns(FrameHeader& header, const InputSpec& spec, const std::string& file) {
