@@ -18,8 +18,14 @@ find_package(FastFloat REQUIRED)
 find_package(hwy 1.0 REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(zstd REQUIRED)
+# voro++ ships neither a package configuration nor a find module.
+find_path(VORO_INCLUDE_DIR voro++/voro++.hh REQUIRED)
+find_library(VORO_LIBRARY voro++ REQUIRED)
+add_library(Voro::voro++ UNKNOWN IMPORTED)
+set_target_properties(Voro::voro++ PROPERTIES
+  IMPORTED_LOCATION ${VORO_LIBRARY} INTERFACE_INCLUDE_DIRECTORIES ${VORO_INCLUDE_DIR})
 
 # What the library links but its users need not know.
 set(GRAINVDB_PRIVATE_DEPENDENCIES
   $<BUILD_INTERFACE:Eigen3::Eigen> $<BUILD_INTERFACE:nlohmann_json::nlohmann_json> $<BUILD_INTERFACE:FastFloat::fast_float>
-  hdf5::hdf5_hl hdf5::hdf5 yaml-cpp ZLIB::ZLIB zstd::libzstd_shared hwy::hwy)
+  hdf5::hdf5_hl hdf5::hdf5 yaml-cpp ZLIB::ZLIB zstd::libzstd_shared hwy::hwy Voro::voro++)

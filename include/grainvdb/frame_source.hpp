@@ -37,10 +37,13 @@ enum class OnError {
 struct InputSpec {
   std::vector<std::string> particles;  ///< paths, directories or globs of particle dumps
   ContactSpec contacts;
-  std::optional<double> dt;          ///< time per step, for dumps without ITEM: TIME [time]
-  std::optional<std::string> units;  ///< unit system, for dumps without ITEM: UNITS; must agree where both are given
-  std::optional<double> density;     ///< of the grains, for dumps without mass: m = ρ 4/3 π r³ [mass/length³]
-  std::optional<double> radius;      ///< of all grains, for dumps without radius and diameter [length]
+  std::optional<double> dt;             ///< time per step, for dumps without ITEM: TIME [time]
+  std::optional<std::string> units;     ///< unit system, for dumps without ITEM: UNITS; must agree where both are given
+  std::optional<double> density;        ///< of the grains, for dumps without mass: m = ρ 4/3 π r³ [mass/length³]
+  std::optional<double> radius;         ///< of all grains, for dumps without radius and diameter [length]
+  std::vector<std::string> columns;     ///< names of the particle columns, for binary dumps that do not name them
+  std::optional<std::string> periodic;  ///< "none" or axes, such as "xy", for formats that do not say
+  std::optional<Box> box;               ///< its bounds, for formats that do not say [length]
   OnError on_error = OnError::error;
   std::map<std::string, Location> where;  ///< where each key stands in the pipeline file, e.g. "input.dt"
 };

@@ -24,13 +24,14 @@ struct OutputFields;
 struct MeasurementNeeds {
   std::optional<ColumnSet> particles{};  ///< of every frame, beside id and position; nothing: no frames
   std::vector<std::string> fields{};     ///< of every output time; none: no fields
+  bool kernel = false;                   ///< the lattice and the kernel, where there are no fields
 };
 
 /// What is known before the first frame.
 struct MeasurementSetting {
   const OptionValues& options;  ///< of the measurement, defaults filled in
   const StageSettings& stages;  ///< options of the fields
-  const Lattice& lattice;
+  const Lattice& lattice;       ///< this and the kernel mean nothing where neither they nor fields are needed
   LucyKernel kernel;
   Box box;                              ///< of the first frame [length]
   std::optional<double> grain_density;  ///< where the pipeline file says it [mass/length³]

@@ -55,6 +55,7 @@ struct RunReport {
   std::vector<std::string> files;                           ///< written, those of the tracers apart
   std::optional<TraceReport> trace;                         ///< where there were tracers
   std::vector<Table> tables;                                ///< of the measurements
+  Provenance tables_from;                                   ///< where the tables come from
   ReadCounters read;
 };
 
@@ -65,6 +66,9 @@ Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSou
 
 /// The same for the tracers, where there are any. Throws ConfigError.
 void check_trace_against_input(const Pipeline& pipeline, const FrameSource& source);
+
+/// The same for the measurements. Returns the lattice with its periods; one of unit voxels where the pipeline has none.
+Lattice check_measure_against_input(const Pipeline& pipeline, FrameSource& source);
 
 /// Reads frame k with every column that the run will need, and makes the checks that the run makes of each frame before
 /// it computes anything. Throws InputError, IoError or LimitError.
@@ -118,8 +122,8 @@ struct CheckpointOptions {
 /// a run of another version or pipeline, or of other inputs; InputError where it is damaged; IoError where another run
 /// is at work in it.
 ///
-/// Without tracer sinks nothing is traced; without field sinks nothing is written but the histories of the tracers, and
-/// the checkpoint is not used.
+/// Without tracer sinks nothing is traced; without field sinks no field is written, and the checkpoint is used only
+/// where measurements are made of fields. The tables of the measurements are in the report.
 RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                        const std::vector<std::unique_ptr<FieldSink>>& sinks,
                        const std::vector<std::unique_ptr<TracerSink>>& tracer_sinks,

@@ -14,6 +14,7 @@ struct TableColumn {
   Dimension dimension{};
   std::string description;  ///< one line
   std::vector<double> values{};
+  std::string unit{};  ///< of the dimension, in the run's unit system; the run fills it in
 };
 
 /// A single number that was measured.
@@ -23,6 +24,7 @@ struct Quantity {
   double error = std::numeric_limits<double>::quiet_NaN();  ///< standard error; NaN where it has none
   Dimension dimension{};
   std::string description;  ///< one line
+  std::string unit{};       ///< as of a column
 };
 
 /// What a measurement comes to.

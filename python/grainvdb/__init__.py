@@ -1,4 +1,5 @@
-"""Reads and draws the results of grainvdb: fields on a lattice (fields.hdf) and histories of tracers (tracers.h5).
+"""Reads and draws the results of grainvdb: fields on a lattice (fields.hdf), histories of tracers (tracers.h5) and
+tables of measurements (tables.h5).
 
     import grainvdb
     fields = grainvdb.open_fields("output/fields.hdf")
@@ -9,6 +10,7 @@
 Needs h5py and numpy, xarray for labelled arrays and matplotlib for `grainvdb.plots`.
 """
 from .fields import Fields, Reason, open_fields
+from .tables import Number, Table, Tables, open_tables
 from .tracers import Tracers, open_tracers
 
-__all__ = ["Fields", "Reason", "Tracers", "open_fields", "open_tracers"]
+__all__ = ["Fields", "Number", "Reason", "Table", "Tables", "Tracers", "open_fields", "open_tables", "open_tracers"]

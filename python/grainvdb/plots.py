@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from . import laws
 from .collapse import Collapse, collapse
 from .fields import AXES, Fields
+from .tables import Table
 from .tracers import Tracers
 
 # Fields of three numbers that are no vector in space.
@@ -213,3 +214,17 @@ def tracer_against(tracers: Tracers, x: str, y: str, where: np.ndarray | None = 
            title=f"scatter/spread = {found.share:.2f}")
     ax.grid(alpha=0.3)
     return ax, found
+
+
+def table_column(table: Table, name: str, ax: Axes | None = None) -> Axes:
+    """A column of a table against its first, with error bars where there is a column of its name and `_error`; joined by
+    lines where the first column ascends."""
+    ax = ax or plt.subplots()[1]
+    first = table.columns[0]
+    error = f"{name}_error"
+    bars = table[error] if error in table.columns else None
+    joined = ".-" if np.all(np.diff(table[first]) > 0) else "."
+    ax.errorbar(table[first], table[name], yerr=bars, fmt=joined, ms=4, lw=0.8, elinewidth=0.8)
+    ax.set_xlabel(label(first, table.unit(first)))
+    ax.set_ylabel(label(name, table.unit(name)))
+    return ax

@@ -24,6 +24,7 @@ from matplotlib.axes import Axes
 
 from . import hdf, plots
 from .fields import AXES, Fields
+from .tables import Table, Tables
 from .tracers import Tracers
 
 #: Fields that say the most come first; every other field follows.
@@ -184,6 +185,23 @@ def _tracers(page: _Page, tracers: Tracers) -> None:
     page.add("Tracers", *parts)
 
 
+def _with_error(value: float, error: float) -> str:
+    return _number(value) if np.isnan(error) else f"{_number(value)} ± {_number(error)}"
+
+
+def _measured(page: _Page, table: Table) -> None:
+    parts = [f"<p>{html.escape(table.description)}: {html.escape(table.equation)}</p>"]
+    parts += [f"<p>Note: {html.escape(remark)}</p>" for remark in table.remarks]
+    numbers = [(n.name, _with_error(n.value, n.error), n.unit, n.description) for n in table.numbers.values()]
+    if numbers:
+        parts.append(_table(numbers, ("quantity", "value", "unit", "what it is")))
+    drawn = [c for c in table.columns[1:] if not c.endswith("_error") and np.any(np.isfinite(table[c]))]
+    if drawn and len(table[table.columns[0]]) > 1:
+        draw = [lambda ax, c=c: plots.table_column(table, c, ax) for c in drawn]
+        parts.append(page.picture(f"table_{table.name}", _panels(draw, 3, (3.9, 2.9)), f"Table {table.name}; bars are standard errors."))
+    page.add(f"Measured: {table.name.replace('_', ' ')}", *parts)
+
+
 def _provenance(page: _Page, provenance: dict[str, str]) -> None:
     parts = [f"<details{' open' if key == 'pipeline' else ''}><summary>{html.escape(key.replace('_', ' '))}</summary><pre>{html.escape(value)}</pre></details>"
              for key, value in sorted(provenance.items(), key=lambda item: (item[0] != "pipeline", item[0])) if value.strip()]
@@ -194,12 +212,11 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
                  fitted: tuple[float, float, float, float] | None = None) -> list[str]:
     """Writes report.html and its pictures into `output` (DIR/report unless given) and returns the files.
 
-    Raises FileNotFoundError when the folder holds neither fields.hdf nor tracers.h5, and hdf.ResultError for files that
-    are something else.
+    Raises FileNotFoundError when the folder holds no result, and hdf.ResultError for files that are something else.
     """
-    have = {name: os.path.isfile(os.path.join(folder, name)) for name in ("fields.hdf", "tracers.h5")}
+    have = {name: os.path.isfile(os.path.join(folder, name)) for name in ("fields.hdf", "tracers.h5", "tables.h5")}
     if not any(have.values()):
-        raise FileNotFoundError(f"{folder}: neither fields.hdf nor tracers.h5 is there; expected the output folder of `grainvdb run`")
+        raise FileNotFoundError(f"{folder}: neither fields.hdf nor tracers.h5 nor tables.h5 is there; expected the output folder of `grainvdb run`")
     output = output or os.path.join(folder, "report")
     page = _Page(f"grainvdb: {os.path.basename(os.path.abspath(folder))}")
     with contextlib.ExitStack() as stack:
@@ -219,6 +236,11 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
             tracers = stack.enter_context(Tracers(folder))
             provenance = provenance or tracers.provenance
             _tracers(page, tracers)
+        if have["tables.h5"]:
+            tables = stack.enter_context(Tables(folder))
+            provenance = provenance or tables.provenance
+            for table in tables.values():
+                _measured(page, table)
         _provenance(page, provenance)
     return list(_write(page, output))
 
@@ -237,7 +259,7 @@ def _write(page: _Page, output: str) -> Iterator[str]:
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="grainvdb report", description="Makes one self-contained HTML page, and PNG pictures, from a result.",
                                      epilog="Example: grainvdb report output && xdg-open output/report/report.html")
-    parser.add_argument("folder", metavar="DIR", help="the output folder of a run, with fields.hdf or tracers.h5")
+    parser.add_argument("folder", metavar="DIR", help="the output folder of a run, with fields.hdf, tracers.h5 or tables.h5")
     parser.add_argument("-o", "--output", metavar="DIR", help="where the report goes; DIR/report unless given")
     parser.add_argument("--axis", choices=AXES, default="z", help="axis of the profiles (default: %(default)s)")
     parser.add_argument("--cut", choices=AXES, help="axis across which slices are taken; the one with the fewest voxels unless given")

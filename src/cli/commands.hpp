@@ -10,6 +10,8 @@ namespace grainvdb::cli {
 
 void add_run(CLI::App& app);
 void add_trace(CLI::App& app);
+void add_measure(CLI::App& app);
+void add_measurements(CLI::App& app);
 void add_info(CLI::App& app);
 void add_init(CLI::App& app);
 void add_validate(CLI::App& app);

@@ -89,6 +89,7 @@ void write_input(std::ostream& out, const Draft& draft) {
   else if (!draft.times_known)
     out << "  # dt: 1.0e-6         # time per step: the dumps have no times\n";
   if (input.density) out << "  density: " << print_number(*input.density) << '\n';
+  if (input.periodic) out << "  periodic: " << *input.periodic << '\n';
   if (input.radius) out << "  radius: " << print_number(*input.radius) << '\n';
   write_contacts(out, draft);
 }

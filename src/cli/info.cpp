@@ -140,6 +140,8 @@ void add_info(CLI::App& app) {
   command->add_option("--dt", options->input.dt, "Time per step, for dumps without times")
       ->type_name("TIME")
       ->check(CLI::PositiveNumber);
+  command->add_option("--periodic", options->input.periodic, "Periodic axes, such as xy, for dumps that do not say")
+      ->type_name("AXES");
   command->add_flag("--list", options->list, "List every frame");
   command->footer(footer);
   command->callback([options] { info(*options); });

@@ -179,6 +179,8 @@ void add_init(CLI::App& app) {
   command->add_option("--radius", input.radius, "Radius of all grains, for dumps without sizes")
       ->type_name("LENGTH")
       ->check(CLI::PositiveNumber);
+  command->add_option("--periodic", input.periodic, "Periodic axes, such as xy, for dumps that do not say")
+      ->type_name("AXES");
   command->add_option("-o,--output", options->file, "The pipeline file to write")
       ->type_name("FILE")
       ->capture_default_str();

@@ -24,6 +24,7 @@ constexpr const char* footer = R"(Examples:
   grainvdb run pipelines/shear_cell.yaml --output result
   grainvdb run pipelines/shear_cell.yaml --set kernel.cutoff=3e-3 --frames ::2
   grainvdb trace pipelines/silo_elements.yaml --output result
+  grainvdb measure pipelines/structure.yaml --output result
   grainvdb report result
 
 Exit codes:
@@ -96,10 +97,12 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   add_run(app);
   add_trace(app);
+  add_measure(app);
   add_info(app);
   add_init(app);
   add_validate(app);
   add_stages(app);
+  add_measurements(app);
   add_graph(app);
   add_schema(app);
   add_spot(app);

@@ -1,14 +1,13 @@
 #include "cli/open_input.hpp"
 
-#include <algorithm>
+#include "pipeline/measure_needs.hpp"
 
 namespace grainvdb::cli {
 
 InputSpec needed_input(const Pipeline& pipeline, const Plan& plan) {
   InputSpec spec = pipeline.input;
-  if (std::none_of(plan.sweeps.begin(), plan.sweeps.end(),
-                   [](const Sweep& sweep) { return sweep.columns.has(Column::contacts); }))
-    spec.contacts = {};
+  const ColumnSet columns = all_columns(plan) | measured_columns(pipeline).value_or(ColumnSet());
+  if (!columns.has(Column::contacts)) spec.contacts = {};
   return spec;
 }
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <string>
 
-#include "grainvdb/run.hpp"
+#include "cli/progress_view.hpp"
 
 namespace grainvdb::cli {
 
@@ -12,14 +12,14 @@ namespace grainvdb::cli {
 std::string progress_text(const Progress& progress, double seconds_so_far);
 
 /// Writes to a terminal; does nothing when the stream is not one.
-class ProgressLine {
+class ProgressLine final : public ProgressView {
  public:
   explicit ProgressLine(std::FILE* stream);
-  ~ProgressLine();
+  ~ProgressLine() override;
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  void show(const Progress& progress);
+  void show(const Progress& progress) override;
 
  private:
   std::FILE* stream_;

@@ -1,6 +1,7 @@
 #include "cli/report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <locale>
 #include <sstream>
@@ -57,6 +58,27 @@ std::string describe_trace(const TraceReport& trace) {
          "')['particles/tracers']))\"\n";
 }
 
+/// Four digits: the tables have them all.
+std::string rounded(double value) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << std::setprecision(4) << value;
+  return text.str();
+}
+
+std::string describe_table(const Table& table) {
+  std::string text = "table " + table.name;
+  if (!table.columns.empty()) text += ": " + counted(table.columns.front().values.size(), "row");
+  text += '\n';
+  for (const Quantity& q : table.numbers) {
+    text += "  " + q.name + ' ' + rounded(q.value);
+    if (!std::isnan(q.error)) text += " +- " + rounded(q.error);
+    text += (q.unit == "1" ? "" : ' ' + q.unit) + "  (" + q.description + ")\n";
+  }
+  for (const std::string& remark : table.remarks) text += "  note: " + remark + '\n';
+  return text;
+}
+
 std::string warnings_of_input(const RunReport& report) {
   constexpr std::size_t shown = 10;
   std::string text;
@@ -99,8 +121,11 @@ std::string describe(const RunReport& report) {
   std::ostringstream text;
   text.imbue(std::locale::classic());
   text << std::fixed << std::setprecision(2);
-  text << counted(report.frames, "frame") << ", " << counted(report.active_voxels, "active voxel") << ", "
-       << counted(report.channels, "channel") << " splatted per frame\n";
+  text << counted(report.frames, "frame");
+  if (report.channels > 0)
+    text << ", " << counted(report.active_voxels, "active voxel") << ", " << counted(report.channels, "channel")
+         << " splatted per frame";
+  text << '\n';
   if (report.resumed_at > 0) text << "resumed: " << counted(report.resumed_at, "frame") << " had been done before\n";
   if (!report.bad_frames.empty()) text << "left out: " << counted(report.bad_frames.size(), "bad frame") << '\n';
   for (const std::string& line : report.averaging) text << "average: " << line << '\n';
@@ -111,12 +136,14 @@ std::string describe(const RunReport& report) {
     between = ", ";
   }
   text << '\n';
-  text << "memory: " << peak_memory() / 1e6 << " MB at most, " << report.memory / 1e6
-       << " MB by the formula of 'grainvdb graph'\n";
+  text << "memory: " << peak_memory() / 1e6 << " MB at most";
+  if (report.memory > 0) text << ", " << report.memory / 1e6 << " MB by the formula of 'grainvdb graph'";
+  text << '\n';
   text << "read: " << counted(report.read.files_opened.size(), "file") << ", " << counted(report.read.rows_read, "row")
        << ", " << static_cast<double>(report.read.bytes_read) / 1e6 << " MB\n";
   for (const auto& [reason, count] : report.masked)
     text << "mask: " << counted(count, "voxel") << ' ' << reason << meaning(reason) << '\n';
+  for (const Table& table : report.tables) text << describe_table(table);
   text << files_written(report.files);
   if (report.trace) text << describe_trace(*report.trace);
   return text.str();

@@ -12,13 +12,18 @@
 #include <tbb/global_control.h>
 
 #include "cli/commands.hpp"
+#include "cli/dry_run.hpp"
+#include "cli/error_json.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/open_input.hpp"
 #include "cli/output_folder.hpp"
+#include "cli/progress_json.hpp"
 #include "cli/progress_line.hpp"
 #include "cli/report.hpp"
 #include "grainvdb/follow.hpp"
 #include "grainvdb/scales.hpp"
+#include "grainvdb/table_sink.hpp"
+#include "pipeline/measure_needs.hpp"
 #include "pipeline/number.hpp"
 
 namespace grainvdb::cli {
@@ -30,6 +35,7 @@ constexpr const char* footer = R"(Examples:
   grainvdb run pipelines/shear_cell.yaml --frames -10: --set lattice.voxel=0.8e-3
   grainvdb run pipelines/shear_cell.yaml --set output.fields=[phi,velocity]
   grainvdb run pipelines/shear_cell.yaml --output result --resume
+  grainvdb run pipelines/shear_cell.yaml --dry-run
 
 Files appear under their names only when they are complete. Ctrl-C ends the run after the frame at hand and leaves no
 file; a second Ctrl-C ends it at once and may leave a temporary one.)";
@@ -42,6 +48,13 @@ constexpr const char* trace_footer = R"(Examples:
 Writes nothing but the histories that the section 'trace' of the pipeline file describes; 'run' writes them along with
 the fields. 'grainvdb schema --text' explains its keys.)";
 
+constexpr const char* measure_footer = R"(Examples:
+  grainvdb measure pipelines/structure.yaml
+  grainvdb measure pipelines/structure.yaml --output structure --set measure.pair_correlation.bins=200
+
+Writes tables.h5 and tables/*.csv, and no fields; 'run' writes them along with the fields. What no table needs is neither
+read nor computed. 'grainvdb measurements' lists what can be measured.)";
+
 struct Options {
   PipelineArguments pipeline;
   std::string output = "output";
@@ -50,6 +63,9 @@ struct Options {
   double checkpoint_interval = CheckpointOptions{}.interval;
   bool follow = false;
   FollowOptions waiting;
+  std::string progress_file;
+  bool log_json = false;
+  bool dry_run = false;
   bool quiet = false;
 };
 
@@ -75,16 +91,44 @@ ScaleRun make_run(Pipeline pipeline, const std::string& folder) {
   return run;
 }
 
+void write_tables(RunReport& report, const std::string& folder) {
+  if (report.tables.empty()) return;
+  for (const TableSinkInfo& format : table_sink_registry()) {
+    const auto sink = format.make(folder);
+    sink->write(report.tables, report.tables_from);
+    const std::vector<std::string> files = sink->files();
+    report.files.insert(report.files.end(), files.begin(), files.end());
+  }
+}
+
+std::vector<std::unique_ptr<ProgressView>> progress_views(const Options& options) {
+  std::vector<std::unique_ptr<ProgressView>> views;
+  if (!options.progress_file.empty()) views.push_back(std::make_unique<ProgressFile>(options.progress_file));
+  if (options.log_json) {
+    views.push_back(std::make_unique<ProgressLog>());
+  } else if (!options.quiet) {
+    views.push_back(std::make_unique<ProgressLine>(stderr));
+  }
+  return views;
+}
+
+void warn(const Options& options, const std::string& warnings) {
+  if (options.log_json)
+    log_warnings(warnings);
+  else
+    std::cerr << warnings;
+}
+
 /// work(show) on as many threads as are wanted; show(progress) is for it to call again and again.
 template <class F>
 auto with_progress(const Options& options, F work) {
   std::optional<tbb::global_control> threads;
   if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
   watch_for_interrupts();
-  ProgressLine line(stderr);
+  const auto views = progress_views(options);
   return work([&](const Progress& progress) {
     check_for_interrupt();
-    if (!options.quiet) line.show(progress);
+    for (const auto& view : views) view->show(progress);
   });
 }
 
@@ -92,7 +136,7 @@ void run_once(const Pipeline& pipeline, const Options& options) {
   const ScaleRun run = make_run(pipeline, options.output);
   std::optional<CheckpointOptions> checkpoint;
   if (options.resume || options.follow) checkpoint = CheckpointOptions{options.output, options.checkpoint_interval};
-  const RunReport report = with_progress(options, [&](const auto& show) {
+  RunReport report = with_progress(options, [&](const auto& show) {
     if (!options.follow)
       return run_pipeline(run.pipeline, run.plan, *open_input(run.pipeline, run.plan), run.sinks, run.tracer_sinks,
                           show, checkpoint);
@@ -100,7 +144,8 @@ void run_once(const Pipeline& pipeline, const Options& options) {
     return follow_pipeline(run.pipeline, run.plan, input, run.sinks, run.tracer_sinks, options.waiting, *checkpoint,
                            show);
   });
-  std::cerr << warnings(report);
+  write_tables(report, options.output);
+  warn(options, warnings(report));
   if (!options.quiet) std::cout << describe(report);
 }
 
@@ -116,21 +161,37 @@ void run_at_scales(const Pipeline& pipeline, const Options& options) {
                        {},
                        "one scale, or neither --resume nor --follow",
                        {}});
+  if (measured_columns(pipeline))
+    throw ConfigError({pipeline.location("measure"),
+                       "frames are not measured at several scales",
+                       "both scales and measurements of frames",
+                       "one of them",
+                       {}});
   std::vector<ScaleRun> runs;
   std::vector<std::string> names;
   for (const Pipeline& p : at_scales(pipeline)) {
     runs.push_back(make_run(p, folder_of_scale(options.output, p)));
     names.push_back(scale_name(p));
   }
-  const std::vector<RunReport> reports = with_progress(options, [&](const auto& show) {
+  std::vector<RunReport> reports = with_progress(options, [&](const auto& show) {
     return run_scales(runs, *open_input(runs.front().pipeline, runs.front().plan), show);
   });
-  std::cerr << warnings(reports, names);
+  for (std::size_t n = 0; n < runs.size(); ++n)
+    write_tables(reports[n], folder_of_scale(options.output, runs[n].pipeline));
+  warn(options, warnings(reports, names));
   if (options.quiet) return;
   for (std::size_t n = 0; n < runs.size(); ++n) std::cout << names[n] << '\n' << describe(reports[n]);
 }
 
+void run_dry(const Pipeline& pipeline) {
+  for (const Pipeline& p : at_scales(pipeline)) {
+    const Plan plan = make_plan(p);
+    std::cout << describe(plan, p) << '\n' << estimate(p, plan, *open_input(p, plan));
+  }
+}
+
 void run(const Pipeline& pipeline, const Options& options) {
+  if (options.dry_run) return run_dry(pipeline);
   pipeline.scales.empty() ? run_once(pipeline, options) : run_at_scales(pipeline, options);
 }
 
@@ -155,7 +216,34 @@ void trace(const Options& options) {
                        "'grainvdb schema --text' explains its keys"});
   pipeline.fields.clear();
   pipeline.formats.clear();
+  pipeline.measure.clear();
   run(pipeline, options);
+}
+
+void measure(const Options& options) {
+  Pipeline pipeline = load(options);
+  if (pipeline.measure.empty())
+    throw ConfigError({Location{pipeline.file},
+                       "there is nothing to measure: the section 'measure' is missing",
+                       {},
+                       "measure, with a section for each measurement",
+                       "'grainvdb measurements' lists them"});
+  pipeline.fields.clear();
+  pipeline.formats.clear();
+  pipeline.trace.reset();
+  run(pipeline, options);
+}
+
+/// Errors are events, too, where events are logged.
+template <class F>
+void with_errors_logged(const Options& options, F work) {
+  if (!options.log_json) return work(options);
+  try {
+    work(options);
+  } catch (const Error& error) {
+    log_event("error", error_json(error));
+    throw CLI::RuntimeError(error.exit_code());
+  }
 }
 
 void add_options(CLI::App& command, Options& options) {
@@ -167,6 +255,14 @@ void add_options(CLI::App& command, Options& options) {
   command.add_option("--threads", options.threads, "Threads to use; all processors by default")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
+  command
+      .add_option("--progress-file", options.progress_file,
+                  "Keep how far the run is in this file, as JSON, for batch systems")
+      ->type_name("FILE");
+  command.add_flag("--log-json", options.log_json,
+                   "Write progress, warnings and errors as JSON, an object a line, to the standard error");
+  command.add_flag("--dry-run", options.dry_run,
+                   "Check everything, compute one frame and estimate what all would take; write nothing");
   command.add_flag("-q,--quiet", options.quiet, "Print nothing but errors and warnings");
 }
 
@@ -207,7 +303,7 @@ void add_run(CLI::App& app) {
       ->needs(follow)
       ->capture_default_str();
   command->footer(footer);
-  command->callback([options] { run_or_follow(*options); });
+  command->callback([options] { with_errors_logged(*options, run_or_follow); });
 }
 
 void add_trace(CLI::App& app) {
@@ -215,7 +311,15 @@ void add_trace(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   add_options(*command, *options);
   command->footer(trace_footer);
-  command->callback([options] { trace(*options); });
+  command->callback([options] { with_errors_logged(*options, trace); });
+}
+
+void add_measure(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("measure", "Make the tables that a pipeline asks for, and nothing else");
+  const auto options = std::make_shared<Options>();
+  add_options(*command, *options);
+  command->footer(measure_footer);
+  command->callback([options] { with_errors_logged(*options, measure); });
 }
 
 }  // namespace grainvdb::cli

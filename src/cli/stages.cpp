@@ -2,17 +2,14 @@
 #include <iostream>
 #include <memory>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/commands.hpp"
+#include "cli/describe_options.hpp"
 #include "grainvdb/plan.hpp"
 #include "grainvdb/units.hpp"
 #include "pipeline/text.hpp"
 
 namespace grainvdb::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* footer = R"(Examples:
   grainvdb stages
@@ -38,18 +35,6 @@ Plan plan_for(const Stage& stage) {
   return make_plan(pipeline);
 }
 
-Json describe_option(const OptionInfo& option) {
-  static constexpr const char* types[] = {"boolean", "integer", "number", "text", "list of texts", "list of numbers"};
-  Json json{{"name", option.name},
-            {"type", types[option.default_value.index()]},
-            {"default", std::visit([](const auto& v) { return Json(v); }, option.default_value)},
-            {"help", option.help}};
-  if (!option.choices.empty()) json["choices"] = option.choices;
-  if (std::isfinite(option.minimum)) json["minimum"] = option.minimum;
-  if (std::isfinite(option.maximum)) json["maximum"] = option.maximum;
-  return json;
-}
-
 Json describe_stage(const Stage& stage) {
   const Plan plan = plan_for(stage);
   ColumnSet columns;
@@ -70,12 +55,6 @@ Json describe_stage(const Stage& stage) {
           {"options", options}};
 }
 
-std::string joined(const Json& names, const char* none) {
-  std::string text;
-  for (const Json& name : names) text += (text.empty() ? "" : ", ") + name.get<std::string>();
-  return text.empty() ? none : text;
-}
-
 void print_details(const Json& stage) {
   std::cout << stage["name"].get<std::string>() << ": " << stage["description"].get<std::string>() << '\n'
             << "  components  " << stage["components"] << '\n'
@@ -84,13 +63,7 @@ void print_details(const Json& stage) {
             << "  needs       " << joined(stage["needs"], "no other field") << '\n'
             << "  reads       " << joined(stage["reads"], "nothing") << " in " << stage["sweeps"]
             << (stage["sweeps"] == 1 ? " sweep" : " sweeps") << '\n';
-  for (const Json& option : stage["options"]) {
-    std::cout << "  option " << option["name"].get<std::string>() << " (" << option["type"].get<std::string>()
-              << ", default " << option["default"].dump() << ")\n      " << option["help"].get<std::string>() << '\n';
-    if (option.contains("choices")) std::cout << "      one of " << joined(option["choices"], "") << '\n';
-    if (option.contains("minimum")) std::cout << "      at least " << option["minimum"] << '\n';
-    if (option.contains("maximum")) std::cout << "      at most " << option["maximum"] << '\n';
-  }
+  print_options(stage["options"]);
 }
 
 void print_table(const Json& stages) {
@@ -102,23 +75,14 @@ void print_table(const Json& stages) {
   std::cout << "\n'grainvdb stages NAME' shows one with what it needs and its options.\n";
 }
 
-std::string cell(std::string text) {
-  for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, 1, '\\');
-  return text;
-}
-
 void print_markdown(const Json& stages) {
   std::cout << "| field | components | unit (SI) | what | equation | needs | options (default) |\n"
             << "|---|---|---|---|---|---|---|\n";
   for (const Json& stage : stages) {
-    std::string options;
-    for (const Json& option : stage["options"])
-      options +=
-          (options.empty() ? "`" : ", `") + option["name"].get<std::string>() + "` (" + option["default"].dump() + ')';
     std::cout << "| `" << stage["name"].get<std::string>() << "` | " << stage["components"] << " | "
               << cell(stage["unit"].get<std::string>()) << " | " << cell(stage["description"].get<std::string>())
               << " | " << cell(stage["equation"].get<std::string>()) << " | " << joined(stage["needs"], "-") << " | "
-              << cell(options.empty() ? "-" : options) << " |\n";
+              << cell(options_in_short(stage["options"])) << " |\n";
   }
 }
 

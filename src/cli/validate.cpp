@@ -45,6 +45,8 @@ void check(const Options& options) {
   if (options.no_input) return;
   const auto source = open_input(pipelines.front(), plans.front());
   for (std::size_t n = 0; n < pipelines.size(); ++n) {
+    if (!pipelines[n].measure.empty()) check_measure_against_input(pipelines[n], *source);
+    if (plans[n].stages.empty()) continue;
     const Lattice lattice = check_against_input(pipelines[n], plans[n], *source);
     check_trace_against_input(pipelines[n], *source);
     check_first_frame(pipelines[n], plans[n], lattice, *source);

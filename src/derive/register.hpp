@@ -13,5 +13,6 @@ void register_spin(StageRegistry& registry);               ///< rotational_tempe
 void register_principal(StageRegistry& registry);          ///< principal_stress, principal_axes, principal_gap
 void register_mohr_coulomb(StageRegistry& registry);       ///< mu_mohr_coulomb, slip_lines
 void register_coaxiality(StageRegistry& registry);         ///< coaxiality_angle
+void register_spot_drift(StageRegistry& registry);         ///< mean_extreme_stress, spot_drift
 
 }  // namespace grainvdb

@@ -4,4 +4,14 @@
 
 #include "grainvdb/measurement.hpp"
 
-namespace grainvdb {}  // namespace grainvdb
+namespace grainvdb {
+
+std::vector<MeasurementInfo> profile_measurements();
+std::vector<MeasurementInfo> plane_profile_measurements();
+std::vector<MeasurementInfo> fluidity_measurements();
+std::vector<MeasurementInfo> rheology_measurements();
+std::vector<MeasurementInfo> stationarity_measurements();
+std::vector<MeasurementInfo> plasticity_measurements();
+std::vector<MeasurementInfo> structure_measurements();
+
+}  // namespace grainvdb

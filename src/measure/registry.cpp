@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include "grainvdb/measurement.hpp"
 #include "measure/register.hpp"
@@ -8,6 +9,10 @@ namespace grainvdb {
 const std::vector<MeasurementInfo>& measurement_registry() {
   static const std::vector<MeasurementInfo> registry = [] {
     std::vector<MeasurementInfo> all;
+    for (const auto family :
+         {profile_measurements, plane_profile_measurements, fluidity_measurements, rheology_measurements,
+          stationarity_measurements, plasticity_measurements, structure_measurements})
+      for (MeasurementInfo& measurement : family()) all.push_back(std::move(measurement));
     return all;
   }();
   return registry;

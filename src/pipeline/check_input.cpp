@@ -7,6 +7,7 @@
 #include "grainvdb/run.hpp"
 #include "pipeline/frame_checks.hpp"
 #include "pipeline/material.hpp"
+#include "pipeline/measure_needs.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/wall_domain.hpp"
 
@@ -70,9 +71,8 @@ void check_periodic_box(const Pipeline& pipeline, const FrameInfo& first, const 
 
 /// Before the first frame is read: what only the last sweep wants of the last frame would else be missed after hours.
 /// Where bad frames are skipped, there must be one that is not.
-void require_columns(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
+void require_columns(const Pipeline& pipeline, ColumnSet columns, FrameSource& source,
                      const std::vector<std::size_t>& wanted) {
-  const ColumnSet columns = all_columns(plan);
   if (pipeline.input.on_error == OnError::error) {
     for (std::size_t k : wanted) source.require(k, columns);
     return;
@@ -101,6 +101,31 @@ void require_blocks(const Pipeline& pipeline, const Plan& plan, std::size_t fram
                      "Average over more frames, or lower average.blocks (to 2 at least)"});
 }
 
+std::vector<std::size_t> wanted_frames(const Pipeline& pipeline, const FrameSource& source) {
+  std::vector<std::size_t> wanted = select_frames(pipeline.frames, source.frames().size());
+  if (wanted.empty())
+    throw ConfigError({pipeline.location("frames"),
+                       "no frame is selected",
+                       {},
+                       "a range within the " + std::to_string(source.frames().size()) + " frames of the input",
+                       {}});
+  return wanted;
+}
+
+/// With the periods of the box, in which no particle may meet its own image.
+Lattice lattice_in(const Pipeline& pipeline, const FrameSource& source, const std::vector<std::size_t>& wanted) {
+  const auto& frames = source.frames();
+  const FrameInfo& first = frames[wanted.front()];
+  for (std::size_t k : wanted) check_periodic_box(pipeline, first, frames[k]);
+  Lattice lattice(pipeline.voxel, pipeline.origin);
+  try {
+    lattice.set_periods(first.box);
+  } catch (const std::invalid_argument& e) {
+    throw ConfigError({pipeline.location("lattice.voxel"), e.what(), {}, {}, {}});
+  }
+  return lattice;
+}
+
 }  // namespace
 
 void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& lattice, FrameSource& source,
@@ -113,28 +138,23 @@ void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& latt
 Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source) {
   check_plan(pipeline, plan);
   check_wall_grains(pipeline, plan);
-  const auto& frames = source.frames();
-  const std::vector<std::size_t> wanted = select_frames(pipeline.frames, frames.size());
-  if (wanted.empty())
-    throw ConfigError({pipeline.location("frames"),
-                       "no frame is selected",
-                       {},
-                       "a range within the " + std::to_string(frames.size()) + " frames of the input",
-                       {}});
-  const FrameInfo& first = frames[wanted.front()];
-  for (std::size_t k : wanted) check_periodic_box(pipeline, first, frames[k]);
-
-  Lattice lattice(pipeline.voxel, pipeline.origin);
-  try {
-    lattice.set_periods(first.box);
-  } catch (const std::invalid_argument& e) {
-    throw ConfigError({pipeline.location("lattice.voxel"), e.what(), {}, {}, {}});
-  }
-
+  const std::vector<std::size_t> wanted = wanted_frames(pipeline, source);
+  Lattice lattice = lattice_in(pipeline, source, wanted);
   require_blocks(pipeline, plan, wanted.size());
   wall_domain(pipeline, source, wanted);
-  require_columns(pipeline, plan, source, wanted);
+  require_columns(pipeline, all_columns(plan), source, wanted);
   return lattice;
+}
+
+Lattice check_measure_against_input(const Pipeline& pipeline, FrameSource& source) {
+  const std::vector<std::size_t> wanted = wanted_frames(pipeline, source);
+  if (const auto columns = measured_columns(pipeline)) {
+    if (columns->has(Column::contacts) && pipeline.input.contacts.files.empty())
+      throw ConfigError({pipeline.location("measure"), "the wanted measurements need contacts, and the input has none",
+                         "no input.contacts", "input.contacts.files", "Name the contact dumps"});
+    require_columns(pipeline, *columns, source, wanted);
+  }
+  return pipeline.voxel > 0 ? lattice_in(pipeline, source, wanted) : Lattice(1, {});
 }
 
 }  // namespace grainvdb

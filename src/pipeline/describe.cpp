@@ -3,9 +3,11 @@
 #include <set>
 #include <string>
 
+#include "grainvdb/measurement.hpp"
 #include "grainvdb/memory_model.hpp"
 #include "grainvdb/plan.hpp"
 #include "grainvdb/units.hpp"
+#include "pipeline/measure_needs.hpp"
 #include "pipeline/number.hpp"
 #include "pipeline/wall_domain.hpp"
 #include "pipeline/wall_schema.hpp"
@@ -84,10 +86,12 @@ std::string describe_sweep(const Sweep& sweep) {
   return text;
 }
 
-std::vector<std::string> columns_not_read(const Plan& plan) {
+std::vector<std::string> columns_not_read(const Plan& plan, const Pipeline& pipeline) {
   std::set<std::string> read;
   for (const Sweep& sweep : plan.sweeps)
     for (const std::string& name : column_names(sweep.columns)) read.insert(name);
+  if (const auto measured = measured_columns(pipeline))
+    for (const std::string& name : column_names(*measured)) read.insert(name);
   std::vector<std::string> rest;
   for (const std::string& name : column_names(every_column()))
     if (!read.contains(name)) rest.push_back(name);
@@ -138,6 +142,20 @@ std::string trace_text(const TraceSpec& trace) {
   return text + ", as " + joined(trace.formats, "nothing") + '\n';
 }
 
+std::string measure_text(const Pipeline& pipeline) {
+  std::string text;
+  for (const auto& [name, options] : pipeline.measure) {
+    const MeasurementInfo& info = *find_measurement(name);
+    const MeasurementNeeds needs = info.needs(options);
+    text += "measured: " + name + ": " + info.equation + "; from ";
+    if (needs.particles) text += joined(column_names(*needs.particles), "") + " of every frame";
+    if (needs.particles && !needs.fields.empty()) text += " and ";
+    if (!needs.fields.empty()) text += joined(needs.fields, "");
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string describe(const Plan& plan, const Pipeline& pipeline) {
@@ -151,21 +169,24 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
     text += describe_sweep(plan.sweeps[s]);
   }
 
-  text += "\nstages, in order\n";
+  if (!plan.stages.empty()) text += "\nstages, in order\n";
   for (const Stage* stage : plan.stages)
     text += "  " + stage->name + " [" + unit_symbol(pipeline, stage->dimension) + "]: " + stage->equation +
             (is_written(pipeline, *stage) ? "" : " (not written)") + '\n';
 
-  text += "\ntime means kept: " + joined(names_of(plan.means), "none") + '\n';
+  if (!plan.stages.empty()) text += "\ntime means kept: " + joined(names_of(plan.means), "none") + '\n';
   if (!plan.errors.by_block.empty())
     text += "standard errors: from sums over " + (pipeline.until ? "up to " : std::string()) +
             counted(pipeline.until ? 2 * pipeline.blocks : pipeline.blocks, "block") + " of frames; derived again " +
             "without each: " + joined(names_of(plan.errors.by_block), "none") + '\n';
-  const MemoryModel memory = memory_model(plan, pipeline);
-  text += "peak memory: " + to_string(memory) + "\n  " + symbols(memory) + '\n';
+  if (!plan.stages.empty()) {
+    const MemoryModel memory = memory_model(plan, pipeline);
+    text += "peak memory: " + to_string(memory) + "\n  " + symbols(memory) + '\n';
+  }
   text += "written: " + joined(pipeline.fields, "nothing") + " as " + joined(pipeline.formats, "nothing") + '\n';
   if (pipeline.trace) text += trace_text(*pipeline.trace);
-  text += "not read: " + joined(columns_not_read(plan), "nothing is left out") + '\n';
+  text += measure_text(pipeline);
+  text += "not read: " + joined(columns_not_read(plan, pipeline), "nothing is left out") + '\n';
   text += "not needed: " + joined(plan.not_needed, "no stage is left out") + '\n';
   return text;
 }

@@ -82,7 +82,7 @@ RunReport follow_pipeline(const Pipeline& pipeline, const Plan& plan, FollowedIn
       return run_into({sinks, tracer_sinks}, pipeline, plan, *frames_up_to(*options.last_step, input), progress, &kept);
     if (patience.has_ended())
       return run_into({sinks, tracer_sinks}, pipeline, plan, *open_dumps(input.spec()), progress, &kept);
-    if (come && !select_frames(pipeline.frames, frames).empty())
+    if (come && !plan.stages.empty() && !select_frames(pipeline.frames, frames).empty())
       now.frames_done = stream_certain(pipeline, plan, *source, progress, kept);
     now.frames_total = now.frames_done;
     wait_for(options.interval, now, progress);

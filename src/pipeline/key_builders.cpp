@@ -29,6 +29,21 @@ KeyInfo vector_key(std::string section, std::string name, std::string help, Appl
   return key;
 }
 
+void add_box_keys(Schema& schema, const std::string& section, const BoxOf& corners) {
+  const auto add = [&](const char* name, const char* help, Vec3 std::pair<Vec3, Vec3>::*corner) {
+    auto key = vector_key(section, name, help, [corners, corner](Pipeline& p, const ConfigValue& v) {
+      auto& box = corners(p);
+      if (!box) box.emplace();
+      (*box).*corner = vector_of(v);
+    });
+    key.required = true;
+    key.infinite_allowed = true;
+    schema.keys.push_back(key);
+  };
+  add("lo", "Lower corner.", &std::pair<Vec3, Vec3>::first);
+  add("hi", "Upper corner.", &std::pair<Vec3, Vec3>::second);
+}
+
 Vec3 vector_of(const ConfigValue& value) {
   const auto& v = std::get<std::vector<double>>(value);
   return {v.at(0), v.at(1), v.at(2)};

@@ -1,7 +1,9 @@
 #pragma once
 /// Declarations of keys of common kinds.
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/schema.hpp"
@@ -21,6 +23,10 @@ KeyInfo texts_key(std::string section, std::string name, std::string help, std::
 
 /// Three lengths.
 KeyInfo vector_key(std::string section, std::string name, std::string help, ApplyValue apply);
+
+/// The two corners of a box in that section, `lo` and `hi`; .inf leaves a side open.
+using BoxOf = std::function<std::optional<std::pair<Vec3, Vec3>>&(Pipeline&)>;
+void add_box_keys(Schema& schema, const std::string& section, const BoxOf& corners);
 
 /// The value of a vector key.
 Vec3 vector_of(const ConfigValue& value);

@@ -7,6 +7,7 @@
 #include "pipeline/half_step_keys.hpp"
 #include "pipeline/load_config.hpp"
 #include "pipeline/measure_keys.hpp"
+#include "pipeline/measure_needs.hpp"
 #include "pipeline/resolved.hpp"
 #include "pipeline/scale_keys.hpp"
 #include "pipeline/schema.hpp"
@@ -40,6 +41,16 @@ void check_until(const Pipeline& p) {
                        {}});
 }
 
+// Measurements of frames alone have no use for them.
+void check_lattice(const Pipeline& p) {
+  if (computed_fields(p).empty() && !measures_with_kernel(p)) return;
+  const auto require = [&](const std::string& section, double value, const char* expected) {
+    if (value == 0) throw ConfigError({Location{p.file}, "the section '" + section + "' is missing", {}, expected, {}});
+  };
+  require("lattice", p.voxel, "lattice.voxel");
+  require("kernel", p.cutoff, "kernel.cutoff");
+}
+
 // What no single key can tell.
 void check_together(const Pipeline& p) {
   if (p.fields.empty() && !p.trace && p.measure.empty())
@@ -50,6 +61,7 @@ void check_together(const Pipeline& p) {
                        {}});
   check_trace(p);
   check_measure(p);
+  check_lattice(p);
   const auto& contacts = p.input.contacts;
   if (!contacts.compute.empty() && !contacts.columns.empty())
     throw ConfigError({p.location("input.contacts"),

@@ -24,7 +24,7 @@ class StageOrder {
  public:
   StageOrder(const Pipeline& pipeline, const StageRegistry& registry) : pipeline_(pipeline), registry_(registry) {
     for (const std::string& field : pipeline.fields) visit(field, asks_);
-    if (pipeline.trace) asks_ = "trace";
+    asks_ = pipeline.trace ? "trace" : "measure";
     for (const std::string& field : computed_fields(pipeline)) visit(field, asks_);
     if (!pipeline.until) return;
     asks_ = "average.until";
@@ -294,6 +294,11 @@ bool tells_walls(const std::set<BranchKind>& kinds) {
 }
 
 Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
+  if (computed_fields(pipeline).empty()) {  // measurements of frames alone
+    Plan nothing;
+    for (const Stage& stage : registry.stages()) nothing.not_needed.push_back(stage.name);
+    return nothing;
+  }
   check_reach(pipeline);
   check_voxel(pipeline);
   const StageOrder stages(pipeline, registry);

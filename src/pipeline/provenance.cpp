@@ -7,7 +7,9 @@
 #include <string>
 
 #include "grainvdb/kernel.hpp"
+#include "grainvdb/measurement.hpp"
 #include "grainvdb/version.hpp"
+#include "pipeline/measure_needs.hpp"
 #include "pipeline/number.hpp"
 
 namespace grainvdb {
@@ -38,11 +40,12 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
   std::set<std::string> columns;
   for (const Sweep& sweep : plan.sweeps)
     for (const std::string& name : column_names(sweep.columns)) columns.insert(name);
+  if (const auto measured = measured_columns(pipeline))
+    for (const std::string& name : column_names(*measured)) columns.insert(name);
   Provenance all = key_of_run(pipeline, source);
   all.insert(all.end(),
              {{"units", source.units().name},
               {"steps", lines(averaged, step)},
-              {"grain_volume_error", print_number(grain_volume_error(pipeline.cutoff / pipeline.voxel))},
               {"skipped_frames", lines(skipped, step)},
               {"bad_frames", lines(report.bad_frames, [](const BadFrame& frame) { return to_string(frame); })},
               {"averaging", lines(report.averaging, plain)},
@@ -50,6 +53,13 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
               {"columns_read", lines(columns, plain)},
               {"computed", lines(plan.stages, [](const Stage* s) { return s->name + ": " + s->equation; })},
               {"not_needed", lines(plan.not_needed, plain)}});
+  if (!plan.stages.empty())
+    all.emplace_back("grain_volume_error", print_number(grain_volume_error(pipeline.cutoff / pipeline.voxel)));
+  if (!pipeline.measure.empty())
+    all.emplace_back("measured", lines(pipeline.measure, [](const auto& entry) {
+                       const MeasurementInfo& info = *find_measurement(entry.first);
+                       return info.name + ": " + info.equation;
+                     }));
   return all;
 }
 

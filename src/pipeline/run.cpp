@@ -8,6 +8,8 @@
 #include <tbb/task_group.h>
 
 #include "base/parallel.hpp"
+#include "pipeline/measure_needs.hpp"
+#include "pipeline/measure_pass.hpp"
 #include "pipeline/provenance.hpp"
 #include "pipeline/run_into.hpp"
 #include "pipeline/schedule.hpp"
@@ -127,33 +129,45 @@ void Writer::commit(RunReport& report) {
   report.wall_seconds = clock_.passed();
 }
 
+/// Whether the fields are computed where tracers do not come to, too.
+bool streams_whole_fields(const RunSinks& to, const Pipeline& pipeline) {
+  return !to.fields.empty() || measures_fields(pipeline) || (!computed_fields(pipeline).empty() && to.tracers.empty());
+}
+
 }  // namespace
 
 RunReport run_into(const RunSinks& to, const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                    const std::function<void(const Progress&)>& progress, Checkpoint* checkpoint) {
   const auto& [sinks, tracer_sinks] = to;
+  std::optional<MeasurePass> measurements;
+  if (!pipeline.measure.empty()) measurements.emplace(pipeline, plan, source);
   std::optional<TracePass> tracers;
   if (pipeline.trace && !tracer_sinks.empty()) tracers.emplace(pipeline, plan, source, tracer_sinks);
+  std::optional<Writer> writer;
+  if (!sinks.empty()) writer.emplace(pipeline, plan, source, sinks);
+
   RunReport report;
-  if (sinks.empty() && tracers) {
-    report = tracers->compute(progress);
-  } else {
-    Writer writer(pipeline, plan, source, sinks);
-    const bool together = tracers && tracers->goes_along();
-    const auto take = [&](OutputFields output) {
-      if (together) tracers->take(output);
-      writer.take(std::move(output));
-    };
-    try {
+  try {
+    if (streams_whole_fields(to, pipeline)) {
+      const bool together = tracers && tracers->goes_along();
+      const auto take = [&](OutputFields output) {
+        if (measurements) measurements->take(output);
+        if (together) tracers->take(output);
+        if (writer) writer->take(std::move(output));
+      };
       report = stream_fields(pipeline, plan, source, take, progress, {}, checkpoint);
       if (tracers && !together) tracers->compute(progress);
-    } catch (...) {
-      writer.finish();  // what failed in writing is earlier
-      throw;
+    } else if (tracers) {
+      report = tracers->compute(progress);
     }
-    writer.commit(report);
+    if (measurements) measurements->visit_frames(report, progress);
+  } catch (...) {
+    if (writer) writer->finish();  // what failed in writing is earlier
+    throw;
   }
+  if (writer) writer->commit(report);
   if (tracers) tracers->commit(report);
+  if (measurements) measurements->commit(report);
   if (checkpoint != nullptr) checkpoint->remove();
   return report;
 }
@@ -164,8 +178,7 @@ RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& 
                        const std::function<void(const Progress&)>& progress,
                        const std::optional<CheckpointOptions>& checkpoint) {
   std::optional<Checkpoint> kept;
-  const bool traces_alone = sinks.empty() && pipeline.trace && !tracer_sinks.empty();
-  if (checkpoint && !traces_alone) {
+  if (checkpoint && streams_whole_fields({sinks, tracer_sinks}, pipeline)) {
     check_against_input(pipeline, plan, source);  // by which all files of the input are known
     kept.emplace(*checkpoint, key_of_run(pipeline, source));
   }

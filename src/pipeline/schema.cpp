@@ -18,6 +18,7 @@
 #include "pipeline/scale_keys.hpp"
 #include "pipeline/text.hpp"
 #include "pipeline/trace_schema.hpp"
+#include "pipeline/unsaid_keys.hpp"
 #include "pipeline/wall_schema.hpp"
 
 namespace grainvdb {
@@ -43,23 +44,6 @@ std::vector<std::string> input_paths(const Pipeline& pipeline, const ConfigValue
     result.push_back(((is_pattern ? folder_of_pattern : folder) / path).string());
   }
   return result;
-}
-
-// The two corners of a box.
-template <class Corners>
-void add_box(Schema& schema, const std::string& section, Corners corners) {
-  const auto add = [&](const char* name, const char* help, Vec3 std::pair<Vec3, Vec3>::*corner) {
-    auto key = vector_key(section, name, help, [corners, corner](Pipeline& p, const ConfigValue& v) {
-      auto& box = corners(p);
-      if (!box) box.emplace();
-      (*box).*corner = vector_of(v);
-    });
-    key.required = true;
-    key.infinite_allowed = true;
-    schema.keys.push_back(key);
-  };
-  add("lo", "Lower corner.", &std::pair<Vec3, Vec3>::first);
-  add("hi", "Upper corner.", &std::pair<Vec3, Vec3>::second);
 }
 
 void add_input(Schema& schema) {
@@ -142,7 +126,7 @@ void add_selection(Schema& schema) {
   };
   schema.keys.push_back(ids);
   schema.sections.push_back({"select.region", "A box: lo <= x < hi along each axis; .inf leaves a side open."});
-  add_box(
+  add_box_keys(
       schema, "select.region", [](Pipeline & p) -> auto& { return p.select.region; });
 }
 
@@ -156,7 +140,8 @@ void add_method(Schema& schema) {
   };
   schema.keys.push_back(frames);
 
-  schema.sections.push_back({"lattice", "The voxels on which the fields live.", true});
+  schema.sections.push_back(
+      {"lattice", "The voxels on which the fields live; needed where there are any.", false, true});
   auto voxel =
       number_key("lattice", "voxel", "length", "Edge of a voxel. Periodic lengths must be whole numbers of it.",
                  [](Pipeline& p, const ConfigValue& v) { p.voxel = std::get<double>(v); });
@@ -170,10 +155,10 @@ void add_method(Schema& schema) {
   schema.sections.push_back({"region",
                              "A box in which fields are wanted, the same there as without it: voxels with centres "
                              "lo <= x < hi along each axis; .inf leaves a side open."});
-  add_box(
+  add_box_keys(
       schema, "region", [](Pipeline & p) -> auto& { return p.region; });
 
-  schema.sections.push_back({"kernel", "The smoothing kernel.", true});
+  schema.sections.push_back({"kernel", "The smoothing kernel; needed where there are fields.", false, true});
   KeyInfo kernel{"kernel", "name", ValueType::text, "Shape of the kernel."};
   kernel.choices = {"lucy"};
   kernel.default_value = std::string("lucy");
@@ -329,6 +314,7 @@ Schema make_schema(const StageRegistry& registry) {
   version.apply = [](Pipeline&, const ConfigValue&) {};
   schema.keys.push_back(version);
   add_input(schema);
+  add_unsaid_keys(schema);
   add_contacts(schema);
   add_half_step_keys(schema);
   add_selection(schema);

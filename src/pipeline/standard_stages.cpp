@@ -27,6 +27,7 @@ const StageRegistry& StageRegistry::standard() {
     register_principal(r);
     register_mohr_coulomb(r);
     register_coaxiality(r);
+    register_spot_drift(r);
     register_standard_errors(r);
     register_bookkeeping(r);
     return r;

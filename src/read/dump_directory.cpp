@@ -8,6 +8,7 @@
 #include "read/contact_table.hpp"
 #include "read/particle_table.hpp"
 #include "read/text.hpp"
+#include "read/unsaid.hpp"
 
 namespace grainvdb {
 namespace {
@@ -63,6 +64,12 @@ void leave_out(std::vector<InputFile>& files, const std::set<FileIdentity>& else
   std::erase_if(files, [&](const InputFile& file) { return !file.named && elsewhere.contains(file.identity); });
 }
 
+/// Files may print times with six digits.
+bool same_time(double a, double b) {
+  constexpr double printed = 2e-6;
+  return std::abs(a - b) <= printed * std::max(std::abs(a), std::abs(b));
+}
+
 std::string listed(const std::vector<std::string>& patterns) {
   std::string all;
   for (const std::string& pattern : patterns) all += (all.empty() ? "'" : ", '") + pattern + "'";
@@ -75,6 +82,7 @@ void check_spec(const InputSpec& spec) {
   check_positive(spec, "dt", spec.dt);
   check_positive(spec, "density", spec.density);
   check_positive(spec, "radius", spec.radius);
+  check_box(spec);
   check_contact_spec(spec);
 }
 
@@ -90,7 +98,7 @@ InputFiles find_files(const InputSpec& spec) {
 }
 
 DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
-    : spec_(spec), particles_(std::move(files.particles), RowKind::particles, spec.on_error, counters_) {
+    : spec_(spec), particles_(std::move(files.particles), RowKind::particles, spec_, counters_) {
   particles_.build_index();
   if (particles_.frames().empty())
     throw InputError(
@@ -102,7 +110,7 @@ DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
   std::set<FileIdentity> particle_files;
   for (const InputFile& file : particles_.files()) particle_files.insert(file.identity);
   leave_out(files.contacts, particle_files);
-  contacts_.emplace(std::move(files.contacts), RowKind::contacts, spec.on_error, counters_);
+  contacts_.emplace(std::move(files.contacts), RowKind::contacts, spec_, counters_);
 
   units_ = choose_units(spec, particles_.units());
   for (const FrameRecord& record : particles_.frames()) {
@@ -133,7 +141,7 @@ std::vector<BadFrame> DumpDirectory::unreadable() const {
 void DumpDirectory::require(std::size_t k, ColumnSet wanted) {
   particle_layout(particles_.header(particles_.frames().at(k)), frames_[k].file, spec_, wanted);
   if (!wanted.has(Column::contacts)) return;
-  const FrameRecord& contacts = contacts_->frames()[find_contacts(frames_[k].step)];
+  const FrameRecord& contacts = contacts_->frames()[find_contacts(k)];
   contact_layout(contacts_->header(contacts), contacts_->files()[contacts.file].path, spec_);
 }
 
@@ -147,13 +155,15 @@ Frame DumpDirectory::read(std::size_t k, ColumnSet wanted) {
   frame.time = info.time;
   frame.box = info.box;
   frame.particles = make_particles(layout, particles_.read_rows(layout.request), header, info.file);
-  if (wanted.has(Column::contacts)) frame.contacts = read_contacts(info.step);
+  if (wanted.has(Column::contacts)) frame.contacts = read_contacts(k);
   ++counters_.frames_read;
   return frame;
 }
 
 /// The frame of contacts of a step. The first call indexes the contact dumps.
-std::size_t DumpDirectory::find_contacts(std::int64_t step) {
+std::size_t DumpDirectory::find_contacts(std::size_t frame) {
+  const FrameRecord& particles = particles_.frames()[frame];
+  const std::int64_t step = particles.step;
   const Location where = stated_at(spec_, "input.contacts.files");
   if (spec_.contacts.files.empty())
     throw InputError({where,
@@ -176,11 +186,18 @@ std::size_t DumpDirectory::find_contacts(std::int64_t step) {
                           listed(spec_.contacts.files),
                       "one contact frame for every particle frame that is used",
                       "Choose the frames that have contacts, or fields that need none"});
+  const FrameRecord& contacts = contacts_->frames()[*k];
+  if (particles.time && contacts.time && !same_time(*particles.time, *contacts.time))
+    throw InputError({{contacts_->files()[contacts.file].path, contacts.start.line},
+                      "the contacts of timestep " + std::to_string(step) + " are of another time than its particles",
+                      std::to_string(*contacts.time),
+                      std::to_string(*particles.time),
+                      "Particles and contacts have to be written at the same times"});
   return *k;
 }
 
-Contacts DumpDirectory::read_contacts(std::int64_t step) {
-  const std::size_t k = find_contacts(step);
+Contacts DumpDirectory::read_contacts(std::size_t frame) {
+  const std::size_t k = find_contacts(frame);
   const FrameHeader& header = contacts_->go_to(k);
   const std::string& file = contacts_->files()[contacts_->frames()[k].file].path;
   const ContactLayout layout = contact_layout(header, file, spec_);

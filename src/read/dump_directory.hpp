@@ -48,8 +48,8 @@ class DumpDirectory final : public FrameSource {
   void require_no_fault() const;
 
  private:
-  std::size_t find_contacts(std::int64_t step);
-  Contacts read_contacts(std::int64_t step);
+  std::size_t find_contacts(std::size_t frame);
+  Contacts read_contacts(std::size_t frame);
 
   InputSpec spec_;
   ReadCounters counters_;

@@ -1,5 +1,6 @@
 #pragma once
 /// One dump file of any format, read frame by frame.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -14,6 +15,13 @@ namespace grainvdb {
 /// What the rows of a frame are.
 enum class RowKind { particles, contacts };
 
+/// What a frame does not say of itself, so that the input has to.
+struct Unsaid {
+  bool columns = false;      ///< FrameHeader::columns has placeholders
+  bool periodicity = false;  ///< which axes are periodic
+  std::array<bool, 3> bounds{};
+};
+
 /// What stands before the rows of a frame. Line numbers serve error messages.
 struct FrameHeader {
   TextPosition start;  ///< where the frame begins
@@ -26,6 +34,7 @@ struct FrameHeader {
   std::size_t rows = 0;  ///< as announced; not to be trusted with memory
   std::vector<std::string> columns;
   std::size_t columns_line = 0;
+  Unsaid unsaid;
 };
 
 /// The columns to convert, by their number in the file; each column is in one list at most, once. All others are

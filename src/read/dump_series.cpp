@@ -4,6 +4,7 @@
 
 #include "grainvdb/error.hpp"
 #include "read/text.hpp"
+#include "read/unsaid.hpp"
 
 namespace grainvdb {
 namespace {
@@ -19,8 +20,8 @@ const char* plural(RowKind kind) {
 
 }  // namespace
 
-DumpSeries::DumpSeries(std::vector<InputFile> files, RowKind kind, OnError on_error, ReadCounters& counters)
-    : files_(std::move(files)), kind_(kind), on_error_(on_error), counters_(counters) {}
+DumpSeries::DumpSeries(std::vector<InputFile> files, RowKind kind, const InputSpec& spec, ReadCounters& counters)
+    : files_(std::move(files)), kind_(kind), spec_(spec), counters_(counters) {}
 
 /// Opens a file in place of the one that is open. False when its format is not recognised.
 bool DumpSeries::open(std::size_t file) {
@@ -29,6 +30,13 @@ bool DumpSeries::open(std::size_t file) {
   if (!dump_.dump) return false;
   open_file_ = file;
   return true;
+}
+
+/// The next header of the open file, with what the input says in its place.
+std::optional<FrameHeader> DumpSeries::next_header() {
+  std::optional<FrameHeader> header = dump_.dump->next_header();
+  if (header) complete(*header, spec_, files_[*open_file_].path);
+  return header;
 }
 
 void DumpSeries::build_index() {
@@ -69,7 +77,7 @@ void DumpSeries::build_index() {
 /// False when it threw an InputError and the file is to be left out from here on.
 template <class Read>
 bool DumpSeries::attempt(const InputFile& input, Read read) {
-  if (on_error_ == OnError::error) {
+  if (spec_.on_error == OnError::error) {
     read();
     return true;
   }
@@ -93,7 +101,7 @@ bool DumpSeries::index_complete_frames(std::size_t file) {
   std::size_t count = 0;
   try {
     if (!open(file)) return !input.named;
-    std::optional<FrameHeader> header = dump_.dump->next_header();
+    std::optional<FrameHeader> header = next_header();
     while (header && header->kind == kind_ && dump_.dump->skip_rows()) {
       const bool is_last = dump_.dump->at_end();
       if (is_last && input.state == InputFile::State::growing) return false;
@@ -103,7 +111,7 @@ bool DumpSeries::index_complete_frames(std::size_t file) {
         whole_files_.push_back(input.identity);
         return true;
       }
-      header = dump_.dump->next_header();
+      header = next_header();
     }
     return header && header->kind != kind_ && !input.named;
   } catch (const InputError&) {
@@ -130,14 +138,14 @@ bool DumpSeries::end_pending(std::size_t file, std::map<FileClass, double>& byte
 void DumpSeries::index_file(std::size_t file, std::map<FileClass, double>& bytes_per_row) {
   const InputFile& input = files_[file];
   const bool opened = attempt(input, [&] {
-    if (!open(file) && input.named) refuse_unrecognised(input.path, dump_.head);
+    if (!open(file) && input.named) refuse_unrecognised(input.path, dump_);
   });
   if (!opened || open_file_ != file) return;
   std::optional<FileClass> file_class;
   std::size_t count = 0;
   bool whole = true;
   std::optional<FrameHeader> header;
-  while (attempt(input, [&] { header = dump_.dump->next_header(); }) && header) {
+  while (attempt(input, [&] { header = next_header(); }) && header) {
     if (header->kind != kind_) {
       if (input.named) refuse_kind(*header, input.path);
       return;
@@ -229,10 +237,10 @@ std::optional<std::size_t> DumpSeries::find(std::int64_t step) const {
 std::vector<std::string> DumpSeries::first_columns() {
   for (std::size_t file = 0; file < files_.size(); ++file) {
     if (!open(file)) {
-      if (files_[file].named) refuse_unrecognised(files_[file].path, dump_.head);
+      if (files_[file].named) refuse_unrecognised(files_[file].path, dump_);
       continue;
     }
-    const std::optional<FrameHeader> header = dump_.dump->next_header();
+    const std::optional<FrameHeader> header = next_header();
     if (header && header->kind == kind_) return header->columns;
     if (header && files_[file].named) refuse_kind(*header, files_[file].path);
   }
@@ -242,9 +250,9 @@ std::vector<std::string> DumpSeries::first_columns() {
 const FrameHeader& DumpSeries::go_to(std::size_t k) {
   const FrameRecord& frame = frames_[k];
   const std::string& path = files_[frame.file].path;
-  if (open_file_ != frame.file && !open(frame.file)) refuse_unrecognised(path, dump_.head);
+  if (open_file_ != frame.file && !open(frame.file)) refuse_unrecognised(path, dump_);
   dump_.dump->seek(frame.start);
-  std::optional<FrameHeader> header = dump_.dump->next_header();
+  std::optional<FrameHeader> header = next_header();
   if (!header || header->step != frame.step || header->rows != frame.rows || header->kind != kind_)
     throw InputError({{path, frame.start.line},
                       "the file has changed since it was indexed",

@@ -38,8 +38,8 @@ struct Stated {
 
 class DumpSeries {
  public:
-  /// Opens nothing. `counters` must outlive the series.
-  DumpSeries(std::vector<InputFile> files, RowKind kind, OnError on_error, ReadCounters& counters);
+  /// Opens nothing. `spec` and `counters` must outlive the series.
+  DumpSeries(std::vector<InputFile> files, RowKind kind, const InputSpec& spec, ReadCounters& counters);
 
   /// Opens every file and notes its frames. A file is taken to hold one frame, and only its header is read, when a file
   /// of the same columns and compression was read through and held one frame, and this one has at most 1.25 times as
@@ -78,6 +78,7 @@ class DumpSeries {
   using FileClass = std::pair<std::size_t, Compression>;
 
   bool open(std::size_t file);
+  std::optional<FrameHeader> next_header();
   template <class Read>
   bool attempt(const InputFile& input, Read read);
   void add_frame(std::size_t file, std::size_t index_in_file, const FrameHeader& header);
@@ -91,7 +92,7 @@ class DumpSeries {
 
   std::vector<InputFile> files_;
   RowKind kind_;
-  OnError on_error_;
+  const InputSpec& spec_;
   ReadCounters& counters_;
   std::vector<FrameRecord> frames_;
   std::vector<BadFrame> unreadable_;

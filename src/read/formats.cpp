@@ -1,11 +1,14 @@
 #include "read/formats.hpp"
 
-#include <array>
 #include <utility>
 
 #include "grainvdb/error.hpp"
-#include "read/number.hpp"
+#include "read/binary_dump.hpp"
+#include "read/foreign_formats.hpp"
+#include "read/mercury_data.hpp"
+#include "read/mercury_fstat.hpp"
 #include "read/text_dump.hpp"
+#include "read/vtk_dump.hpp"
 
 namespace grainvdb {
 namespace {
@@ -13,63 +16,15 @@ namespace {
 /// Enough for every signature; smaller than the first chunk of a line reader.
 constexpr std::size_t head_size = 512;
 
-bool has(std::string_view text, std::string_view part) {
-  return text.find(part) != std::string_view::npos;
-}
-
-bool is_text(std::string_view head) {
-  for (const char c : head)
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t') return false;
-  return true;
-}
-
-/// The first line of a MercuryDPM .data file: count, time and six bounds, all numbers.
-bool is_mercury_data(std::string_view head) {
-  std::string_view line = head.substr(0, head.find('\n'));
-  std::size_t numbers = 0;
-  for (std::string_view token = take_token(line); !token.empty(); token = take_token(line), ++numbers) {
-    double value = 0;
-    if (!parse_real(token, value)) return false;
-  }
-  return numbers == 8;
-}
-
-bool is_lammps_binary(std::string_view head) {
-  const std::string_view start = head.substr(0, 64);
-  return has(start, "DUMPCUSTOM") || has(start, "DUMPATOM");
-}
-
-struct Foreign {
-  bool (*recognise)(std::string_view head);
-  std::string_view name;
-};
-
-constexpr std::array foreign_formats{
-    Foreign{[](std::string_view h) { return h.empty(); }, "an empty file"},
-    Foreign{[](std::string_view h) { return h.starts_with("\x89HDF\r\n\x1a\n"); }, "an HDF5 file"},
-    Foreign{[](std::string_view h) { return h.starts_with("CDF\x01") || h.starts_with("CDF\x02"); }, "a NetCDF file"},
-    Foreign{[](std::string_view h) {
-              return h.starts_with(
-                  "\xfd"
-                  "7zXZ");
-            },
-            "an xz-compressed file"},
-    Foreign{[](std::string_view h) { return h.starts_with("BZh"); }, "a bzip2-compressed file"},
-    Foreign{[](std::string_view h) { return h.starts_with("PK\x03\x04"); }, "a zip archive"},
-    Foreign{is_lammps_binary, "a binary LAMMPS dump"},
-    Foreign{[](std::string_view h) { return h.starts_with("# vtk DataFile"); }, "a legacy VTK file"},
-    Foreign{[](std::string_view h) { return has(h, "<VTKFile"); }, "a VTK XML file"},
-    Foreign{[](std::string_view h) { return h.starts_with("LAMMPS (") || h.starts_with("LIGGGHTS ("); }, "a log file"},
-    Foreign{[](std::string_view h) { return has(h, " atoms\n") && has(h, " atom types\n"); }, "a LAMMPS data file"},
-    Foreign{is_mercury_data, "a MercuryDPM .data file"},
-    Foreign{[](std::string_view h) { return !is_text(h); }, "binary data"},
-};
-
 }  // namespace
 
 const std::vector<DumpFormat>& dump_formats() {
   static const std::vector<DumpFormat> formats{
       {"LAMMPS or LIGGGHTS text dump", &TextDump::recognise, &TextDump::open},
+      {"binary LAMMPS dump", &BinaryDump::recognise, &BinaryDump::open},
+      {"LIGGGHTS .vtk file", &VtkDump::recognise, &VtkDump::open},
+      {"MercuryDPM .data file", &MercuryData::recognise, &MercuryData::open},
+      {"MercuryDPM .fstat file", &MercuryFstat::recognise, &MercuryFstat::open},
   };
   return formats;
 }
@@ -88,20 +43,16 @@ OpenedDump open_dump(const std::string& path, ReadCounters& counters) {
   for (const DumpFormat& format : dump_formats()) {
     if (!format.recognise(result.head)) continue;
     opened.bytes->seek(0);
-    result.dump = format.open(LineReader(std::move(opened.bytes), path));
+    result.dump = format.open(std::move(opened.bytes), path);
     break;
   }
   return result;
 }
 
-void refuse_unrecognised(const std::string& path, std::string_view head) {
-  std::string found;
-  for (const Foreign& foreign : foreign_formats) {
-    if (!foreign.recognise(head)) continue;
-    found = foreign.name;
-    break;
-  }
-  if (found.empty()) found = "text that begins with " + in_quotes(head.substr(0, head.find('\n')));
+void refuse_unrecognised(const std::string& path, const OpenedDump& file) {
+  ForeignFile found = what_it_looks_like(file.head);
+  if (file.compression == Compression::gzip) found.name += ", compressed with gzip";
+  if (file.compression == Compression::zstd) found.name += ", compressed with zstd";
   std::string expected;
   for (const DumpFormat& format : dump_formats()) {
     if (!expected.empty()) expected += " or ";
@@ -109,9 +60,9 @@ void refuse_unrecognised(const std::string& path, std::string_view head) {
   }
   throw InputError({{path, 0},
                     "the file is not a dump that can be read",
-                    found,
+                    found.name,
                     expected + ", plain or compressed (.gz, .zst)",
-                    {}});
+                    found.hint});
 }
 
 }  // namespace grainvdb

@@ -52,6 +52,13 @@ bool LineReader::next(std::string_view& line) {
   return true;
 }
 
+bool LineReader::at_end() {
+  std::string_view line;
+  if (!next(line)) return true;
+  unread();
+  return false;
+}
+
 void LineReader::unread() {
   begin_ = last_;
   --line_number_;

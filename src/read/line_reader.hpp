@@ -16,6 +16,7 @@ namespace grainvdb {
 struct TextPosition {
   std::uint64_t offset = 0;
   std::size_t line = 1;
+  std::size_t frame = 0;  ///< frames of the file before it, in formats whose frames are known by that alone
 };
 
 /// Longer lines are refused: they do not stand in dumps.
@@ -35,6 +36,8 @@ class LineReader {
   bool complete() const { return complete_; }
   /// Takes back the last line: next() gives it again. May be called once after each next() that gave a line.
   void unread();
+  /// Whether no line is left. Throws like next().
+  bool at_end();
 
   /// Whole lines from the next one on, with their newlines: those that are at hand, one at least. Empty when none is
   /// left that ends in a newline. Valid until next() or lines() is called again. Throws like next().

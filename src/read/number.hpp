@@ -43,4 +43,12 @@ inline const char* parse_whole(const char* p, const char* end, std::int64_t& val
 bool parse_real(std::string_view token, double& value);
 bool parse_whole(std::string_view token, std::int64_t& value);
 
+/// Takes the whole number out of a double; false where it is none, or from 2^53 on, where doubles leave some out.
+inline bool whole_of(double value, std::int64_t& whole) {
+  constexpr double limit = 9007199254740992;
+  if (!(std::abs(value) < limit) || value != std::floor(value)) return false;
+  whole = static_cast<std::int64_t>(value);
+  return true;
+}
+
 }  // namespace grainvdb

@@ -18,8 +18,8 @@ bool TextDump::recognise(std::string_view head) {
   return head.starts_with(item_mark);
 }
 
-std::unique_ptr<DumpFile> TextDump::open(LineReader lines) {
-  return std::make_unique<TextDump>(std::move(lines));
+std::unique_ptr<DumpFile> TextDump::open(std::unique_ptr<ByteStream> bytes, const std::string& file) {
+  return std::make_unique<TextDump>(LineReader(std::move(bytes), file));
 }
 
 void TextDump::fail(const std::string& what, const std::string& found, const std::string& expected,
@@ -35,13 +35,6 @@ std::optional<FrameHeader> TextDump::next_header() {
     label_ = reader.label();
   }
   return header;
-}
-
-bool TextDump::at_end() {
-  std::string_view line;
-  if (!lines_.next(line)) return true;
-  lines_.unread();
-  return false;
 }
 
 /// After the last row comes the end of the file or the next frame.

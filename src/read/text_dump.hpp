@@ -14,12 +14,12 @@ class TextDump final : public DumpFile {
   explicit TextDump(LineReader lines) : lines_(std::move(lines)) {}
 
   static bool recognise(std::string_view head);
-  static std::unique_ptr<DumpFile> open(LineReader lines);
+  static std::unique_ptr<DumpFile> open(std::unique_ptr<ByteStream> bytes, const std::string& file);
 
   std::optional<FrameHeader> next_header() override;
   bool skip_rows() override;
   Table read_rows(const TableRequest& request) override;
-  bool at_end() override;
+  bool at_end() override { return lines_.at_end(); }
   void seek(const TextPosition& start) override { lines_.seek(start); }
 
  private:

@@ -324,6 +324,7 @@ template void Hdf5File::attribute<std::uint32_t>(const std::string&, const std::
                                                  std::span<const std::uint32_t>);
 template void Hdf5File::attribute<std::uint8_t>(const std::string&, const std::string&, std::span<const std::uint8_t>);
 template void Hdf5File::attribute<float>(const std::string&, const std::string&, float);
+template void Hdf5File::attribute<double>(const std::string&, const std::string&, double);
 template void Hdf5File::attribute<std::int64_t>(const std::string&, const std::string&, std::int64_t);
 
 }  // namespace grainvdb

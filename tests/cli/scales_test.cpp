@@ -107,7 +107,8 @@ TEST(Scales, RefuseWhatCannotBe) {
   EXPECT_THAT(error_of({"--set", "scales.cutoff=[2,2]", "--set", "scales.voxel=[1,1]"}), HasSubstr("a pair twice"));
   EXPECT_THAT(error_of({"--resume"}), HasSubstr("neither be resumed"));
   EXPECT_THAT(error_of({"--follow", "--timeout", "1"}), HasSubstr("nor followed"));
-  EXPECT_THAT(error_of({"--set", "average.until.field=phi", "--set", "average.until.error=0.1"}),
+  EXPECT_THAT(error_of({"--set", "average.until.field=phi", "--set", "average.until.error=0.1", "--set",
+                        "average.until.quantile=0.9"}),
               HasSubstr("both scales and average.until"));
   EXPECT_THAT(error_of({"--set", "trace.seeds.points=[[1, 1, 1]]", "--set", "trace.steps=4", "--set",
                         "trace.neighbourhood=always"}),

@@ -22,7 +22,8 @@ CommandResult grainvdb(const std::vector<std::string>& arguments) {
 }
 
 TEST(Usage, EveryCommandHasHelpWithExamples) {
-  for (const char* command : {"run", "info", "init", "validate", "stages", "graph", "schema", "spot", "report"}) {
+  for (const char* command :
+       {"run", "measure", "info", "init", "validate", "stages", "measurements", "graph", "schema", "spot", "report"}) {
     const CommandResult result = grainvdb({command, "--help"});
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_THAT(result.out, AllOf(HasSubstr("Examples:\n  grainvdb " + std::string(command)), HasSubstr("--help")));
@@ -33,8 +34,8 @@ TEST(Usage, EveryCommandHasHelpWithExamples) {
 TEST(Usage, HelpDocumentsCommandsAndExitCodes) {
   const CommandResult result = grainvdb({"--help"});
   EXPECT_EQ(result.exit_code, 0);
-  for (const char* word : {"run", "info", "init", "validate", "stages", "graph", "schema", "spot", "report",
-                           "Exit codes:", "  0 ", "  1 ", "  2 ", "  3 ", "  4 ", "  5 ", "  130 "})
+  for (const char* word : {"run", "measure", "info", "init", "validate", "stages", "measurements", "graph", "schema",
+                           "spot", "report", "Exit codes:", "  0 ", "  1 ", "  2 ", "  3 ", "  4 ", "  5 ", "  130 "})
     EXPECT_THAT(result.out, HasSubstr(word));
 }
 
@@ -72,7 +73,8 @@ TEST(Usage, TheManualPageHasEveryCommandAndOption) {
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.out, AllOf(StartsWith(".TH GRAINVDB 1"), HasSubstr(".SS grainvdb spot run\n"),
                                 HasSubstr("\\fB\\-o,\\-\\-output\\fR \\fIDIR\\fR"), HasSubstr("Exit codes:")));
-  for (const char* command : {"run", "info", "init", "validate", "stages", "graph", "schema", "spot", "report"})
+  for (const char* command :
+       {"run", "measure", "info", "init", "validate", "stages", "measurements", "graph", "schema", "spot", "report"})
     EXPECT_THAT(result.out, HasSubstr(".SS grainvdb " + std::string(command) + '\n'));
   // A line of text that began with a dot would be a request.
   std::istringstream lines(result.out);

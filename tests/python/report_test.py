@@ -72,7 +72,7 @@ class Report(unittest.TestCase):
         with tempfile.TemporaryDirectory() as empty:
             done = report(empty)
             self.assertEqual(done.returncode, 2)
-            self.assertIn("neither fields.hdf nor tracers.h5", done.stderr)
+            self.assertIn("neither fields.hdf nor tracers.h5 nor tables.h5", done.stderr)
         self.assertEqual(report(self.folder, "--axis", "w").returncode, 1)
         (self.folder / "fields.hdf").write_bytes(b"cut short")
         done = report(self.folder)

@@ -19,6 +19,14 @@ def result(window: str = "all") -> pathlib.Path:
     return folder
 
 
+@functools.cache
+def measured() -> pathlib.Path:
+    """The output folder of the shipped measurements of structure."""
+    folder = pathlib.Path(_kept.name) / "measured"
+    subprocess.run([COMMAND, "measure", ROOT / "pipelines/structure.yaml", "--output", folder, "--quiet"], check=True)
+    return folder
+
+
 def write_tracers(folder: pathlib.Path) -> None:
     """tracers.h5 as the library writes it: five tracers over three samples, in a box 4 long along x and 10 along z."""
     subprocess.run([os.environ["GRAINVDB_MAKE_TRACERS"], folder], check=True)

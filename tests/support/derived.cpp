@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include "support/principal.hpp"
 
@@ -150,6 +151,8 @@ void stress_fields(Voxel& v, const Pipeline& p) {
   v.note(Reason::degenerate_stress_axes, zero);
   v.put("principal_gap", 0, unless({zero}, {std::min(upper.value, lower.value), std::max(upper.error, lower.error)}));
 
+  v.put("mean_extreme_stress", 0, -0.5 * (v.get("principal_stress", 0) + v.get("principal_stress", 2)));
+
   const double gap = number_option(p, "principal_axes", "gap");
   const std::array<Verdict, 2> closed{fails(exceeds(upper, gap)), fails(exceeds(lower, gap))};
   for (const Verdict& c : closed) v.note(Reason::degenerate_stress_axes, c);
@@ -247,7 +250,8 @@ void ratio_fields(Voxel& v, const Pipeline& p) {
   v.put("dv_over_d_domega", 0, unless({no_tw, colder, no_spin}, root(t) / (d * root(w))));
 }
 
-/// ∂u_i/∂x_j by differences: central, towards the one side that has neighbours (three points, or two), or none.
+/// ∂u_i/∂x_j at component 3 i + j by differences: central, towards the one side that has neighbours (three points, or
+/// two), or none.
 void central_gradient(Voxel& v, const VoxelBox& box, const std::vector<bool>& active, const UncertainField& u,
                       std::size_t n, const std::string& field) {
   const auto defined = [&](int axis, int by) -> std::optional<std::size_t> {
@@ -263,7 +267,7 @@ void central_gradient(Voxel& v, const VoxelBox& box, const std::vector<bool>& ac
       v.note(Reason::no_gradient, {!below && !above, true});
       v.note(Reason::one_sided_gradient, {below.has_value() != above.has_value(), true});
     }
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < u.components; ++i) {
       Uncertain d = undefined_value();
       if (defined(axis, 0) && below && above) {
         d = (u.at(*above, i) - u.at(*below, i)) / (2 * h);
@@ -279,6 +283,30 @@ void central_gradient(Voxel& v, const VoxelBox& box, const std::vector<bool>& ac
       v.put(field, 3 * i + axis, d);
     }
   }
+}
+
+/// -Σ s s·(ρ g - (1 - (s·s')²) ∇p) over the slip lines s, s'; ∇p stands where the drift is to be.
+void drift(Voxel& v, const Pipeline& p) {
+  const auto& gravity = option<std::vector<double>>(p.stages, "spot_drift", "gravity");
+  Uncertain sine;
+  for (int a = 0; a < 3; ++a) sine = sine + v.get("slip_lines", a) * v.get("slip_lines", 3 + a);
+  std::array<Uncertain, 3> force;
+  Verdict missing{false, true};
+  for (std::size_t a = 0; a < 3; ++a) {
+    const Uncertain gradient = v.get("spot_drift", static_cast<int>(a));
+    const Verdict without = any_undefined(gradient, sine);
+    missing = {missing.yes || without.yes, missing.sure && without.sure};
+    force[a] = gravity[a] * v.get("density") - (Uncertain{1, 0} - sine * sine) * gradient;
+  }
+  std::array<Uncertain, 3> sum{};
+  for (int line : {0, 3}) {
+    Uncertain along;
+    for (int a = 0; a < 3; ++a) along = along + v.get("slip_lines", line + a) * force[static_cast<std::size_t>(a)];
+    for (int a = 0; a < 3; ++a)
+      sum[static_cast<std::size_t>(a)] = sum[static_cast<std::size_t>(a)] - along * v.get("slip_lines", line + a);
+  }
+  for (int a = 0; a < 3; ++a)
+    v.put("spot_drift", a, unless({{missing.yes, missing.yes || missing.sure}}, sum[static_cast<std::size_t>(a)]));
 }
 
 /// The sums of deviations that are divided by a share of the variance, and the gradient of their mean.
@@ -331,9 +359,10 @@ Derived derive(const VoxelBox& box, const std::vector<bool>& active, const Uncer
   };
   for (const char* name : {"shear_rate", "pressure", "pressure_floor", "shear_stress", "mu", "inertial_number",
                            "fluidity", "gd_over_dv", "g_over_domega", "dv_over_d_domega", "mu_mohr_coulomb",
-                           "coaxiality_angle", "rotational_temperature", "principal_gap"})
+                           "coaxiality_angle", "rotational_temperature", "principal_gap", "mean_extreme_stress"})
     add(name, 1);
   add("principal_stress", 3);
+  add("spot_drift", 3);
   add("slip_lines", 6);
   add("principal_axes", 9);
   for (const Fluctuation& f : fluctuations) {
@@ -356,6 +385,12 @@ Derived derive(const VoxelBox& box, const std::vector<bool>& active, const Uncer
     stress_fields(v, pipeline);
     rate_fields(v, pipeline);
     ratio_fields(v, pipeline);
+  }
+  for (std::size_t n = 0; n < box.size(); ++n) {
+    if (!active[n]) continue;
+    Voxel v(base, out, n);
+    central_gradient(v, box, active, out.fields.at("mean_extreme_stress"), n, "spot_drift");
+    drift(v, pipeline);
   }
   return out;
 }

@@ -71,6 +71,7 @@ class FakeInput : public StageInput {
     register_principal(registry_);
     register_mohr_coulomb(registry_);
     register_coaxiality(registry_);
+    register_spot_drift(registry_);
     settings_ = registry_.default_settings();
   }
 

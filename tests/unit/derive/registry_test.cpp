@@ -35,7 +35,9 @@ TEST(DerivedStages, DescribeThemselves) {
                                                  {"principal_gap", {1, "1"}},
                                                  {"mu_mohr_coulomb", {1, "1"}},
                                                  {"slip_lines", {6, "1"}},
-                                                 {"coaxiality_angle", {1, "1"}}};
+                                                 {"coaxiality_angle", {1, "1"}},
+                                                 {"mean_extreme_stress", {1, "Pa"}},
+                                                 {"spot_drift", {3, "kg/(m^2 s^2)"}}};
   FakeInput in = one_voxel();
   const UnitSystem& si = *find_unit_system("si");
   std::set<std::string> found;

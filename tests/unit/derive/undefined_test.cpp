@@ -140,6 +140,7 @@ TEST(Undefined, NaNPassesThroughEveryStage) {
     if (stage.name == "velocity" || stage.name == "angular_velocity" || stage.name.ends_with("velocity_gradient"))
       continue;
     if (stage.name == "pressure_floor") continue;  // which is pressure_min where there is no material
+    if (stage.name == "spot_drift") continue;      // which differentiates, as velocity_gradient does
     const std::vector<std::string> needs = stage.needs(model.settings()).fields;
     for (const std::string& spoilt : needs) {
       FakeInput in = sheared();

@@ -97,6 +97,18 @@ TEST(LoadPipeline, FillsInDefaults) {
   EXPECT_EQ(p.limits.dense_voxels, Limits{}.dense_voxels);
 }
 
+TEST(LoadPipeline, TakesWhatDumpsLeaveUnsaid) {
+  std::string text = full_text();
+  text.insert(text.find("  radius:"),
+              "  columns: [id, x, y, z]\n  periodic: xy\n  box: {lo: [0, 0, -1], hi: [1, 2, 3]}\n");
+  const Pipeline p = load(text);
+  EXPECT_EQ(p.input.columns, (Texts{"id", "x", "y", "z"}));
+  EXPECT_EQ(p.input.periodic, "xy");
+  ASSERT_TRUE(p.input.box);
+  EXPECT_EQ(p.input.box->lo, (Vec3{0, 0, -1}));
+  EXPECT_EQ(p.input.box->hi, (Vec3{1, 2, 3}));
+}
+
 TEST(LoadPipeline, SaysWhereEachKeyStands) {
   const PipelineFile file(full_text());
   const Pipeline p = load_pipeline(file.path(), {"kernel.cutoff=1"}, test::example_registry());
@@ -123,6 +135,9 @@ void expect_same(const Pipeline& a, const Pipeline& b) {
   EXPECT_EQ(a.input.units, b.input.units);
   EXPECT_EQ(a.input.density, b.input.density);
   EXPECT_EQ(a.input.radius, b.input.radius);
+  EXPECT_EQ(a.input.columns, b.input.columns);
+  EXPECT_EQ(a.input.periodic, b.input.periodic);
+  EXPECT_EQ(a.input.box, b.input.box);
   EXPECT_EQ(a.select.types, b.select.types);
   EXPECT_EQ(a.select.ids, b.select.ids);
   EXPECT_EQ(a.select.region, b.select.region);

@@ -1,0 +1,41 @@
+#pragma once
+/// Small things that measurements of single grains share.
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "grainvdb/frame.hpp"
+#include "grainvdb/options.hpp"
+
+namespace grainvdb {
+
+inline Vec3 vector_at(const Columns3& columns, std::size_t i) {
+  return {columns[0][i], columns[1][i], columns[2][i]};
+}
+
+/// The same, moved into the box along periodic axes.
+inline Vec3 wrapped(const Box& box, const Columns3& columns, std::size_t i) {
+  return {box.wrap(0, columns[0][i]), box.wrap(1, columns[1][i]), box.wrap(2, columns[2][i])};
+}
+
+inline void push_back(Columns3& columns, const Vec3& v) {
+  for (std::size_t a = 0; a < 3; ++a) columns[a].push_back(v[a]);
+}
+
+/// Number mean; NaN where there are none.
+inline double mean_diameter(const std::vector<double>& radius) {
+  return 2 * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size());
+}
+
+/// The value of a length option, or `diameters` mean diameters where it is 0.
+inline double length_option(const OptionValues& options, const std::string& name, double diameters, double diameter) {
+  const double given = std::get<double>(options.at(name));
+  return given > 0 ? given : diameters * diameter;
+}
+
+inline std::size_t count_option(const OptionValues& options, const std::string& name) {
+  return static_cast<std::size_t>(std::get<std::int64_t>(options.at(name)));
+}
+
+}  // namespace grainvdb

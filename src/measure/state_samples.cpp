@@ -1,0 +1,141 @@
+#include "measure/state_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace grainvdb {
+namespace {
+
+/// Below which temperatures nothing is divided by.
+struct TemperatureFloor {
+  double least;
+  double resolution;
+
+  void set(FlowState& state) const {
+    const Vec3& u = state.velocity;
+    const double noise = resolution * resolution * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+    state.least_temperature = std::max(least, noise);
+  }
+};
+
+class ProfileSamples : public StateSamples {
+ public:
+  ProfileSamples(FieldProfile profile, TemperatureFloor floor, std::size_t quantities, StateQuantities f)
+      : profile_(std::move(profile)), floor_(floor), quantities_(quantities), f_(std::move(f)) {}
+
+  void take(const OutputFields& output) override { profile_.take(output); }
+  std::size_t times() const override { return profile_.times(); }
+
+  std::vector<StateSample> samples() const override {
+    std::vector<StateSample> all;
+    for (const std::int64_t bin : profile_.bins()) {
+      const FieldProfile::Means place(profile_, bin);
+      StateSample sample{place.position(), place.height(), {}};
+      sample.values = profile_.estimate(bin, quantities_, [&](const FieldProfile::Means& means, std::span<double> out) {
+        FlowState state = means.state();
+        floor_.set(state);
+        f_(state, out);
+      });
+      if (!std::isnan(sample.values.front().value)) all.push_back(std::move(sample));
+    }
+    return all;
+  }
+
+ private:
+  FieldProfile profile_;
+  TemperatureFloor floor_;
+  std::size_t quantities_;
+  StateQuantities f_;
+};
+
+class VoxelSamples : public StateSamples {
+ public:
+  VoxelSamples(const BinSpec& spec, const Lattice& lattice, TemperatureFloor floor, std::size_t quantities,
+               StateQuantities f)
+      : bins_(spec, lattice), floor_(floor), quantities_(quantities), f_(std::move(f)) {}
+
+  void take(const OutputFields& output) override {
+    if (output.time.frame_count == 0) return;
+    ++times_;
+    std::vector<double> values(quantities_);
+    bins_.for_each(*output.fields.at("phi").topology(), [&](const VoxelPlace& place) {
+      FlowState state = state_at(output, place);
+      floor_.set(state);
+      f_(state, values);
+      if (std::isnan(values.front())) return;
+      StateSample sample{place.position, place.height, {}};
+      for (const double v : values) sample.values.push_back({v, FlowState::unknown});
+      samples_.push_back(std::move(sample));
+    });
+  }
+  std::size_t times() const override { return times_; }
+  std::vector<StateSample> samples() const override { return samples_; }
+
+ private:
+  static FlowState state_at(const OutputFields& output, const VoxelPlace& place) {
+    const auto value = [&](const char* name, int component = 0) {
+      const auto field = output.fields.find(name);
+      if (field == output.fields.end()) return FlowState::unknown;
+      return static_cast<double>(field->second.leaf(place.leaf, component)[place.offset]);
+    };
+    return flow_state(value);
+  }
+
+  Bins bins_;
+  TemperatureFloor floor_;
+  std::size_t quantities_;
+  StateQuantities f_;
+  std::size_t times_ = 0;
+  std::vector<StateSample> samples_;
+};
+
+}  // namespace
+
+std::vector<OptionInfo> sample_options() {
+  std::vector<OptionInfo> options{{.name = "source",
+                                   .default_value = std::string("profile"),
+                                   .help = "profile: averages over planes or shells; voxels: each by itself, those of "
+                                           "all output times",
+                                   .choices = {"profile", "voxels"}}};
+  for (OptionInfo& option : bin_options()) options.push_back(std::move(option));
+  return options;
+}
+
+std::vector<std::string> sample_fields(bool spin) {
+  std::vector<std::string> fields = flow_fields();
+  if (spin) fields.push_back("rotational_fluctuation");
+  return fields;
+}
+
+std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, std::vector<std::string> fields,
+                                           std::size_t quantities, StateQuantities f) {
+  const TemperatureFloor floor{option<double>(setting.stages, "gd_over_dv", "temperature_min"),
+                               option<double>(setting.stages, "velocity", "resolution")};
+  const BinSpec spec = bin_spec(setting.options);
+  if (std::get<std::string>(setting.options.at("source")) == "voxels")
+    return std::make_unique<VoxelSamples>(spec, setting.lattice, floor, quantities, std::move(f));
+  return std::make_unique<ProfileSamples>(FieldProfile(spec, setting.lattice, std::move(fields)), floor, quantities,
+                                          std::move(f));
+}
+
+std::vector<double> fit_errors(const std::vector<StateSample>& samples, std::size_t index, double floor) {
+  std::vector<double> errors;
+  for (const StateSample& sample : samples) {
+    const Estimate& y = sample.values[index];
+    errors.push_back(std::hypot(y.error, floor * y.value));
+    if (!(errors.back() > 0)) return {};
+  }
+  return errors;
+}
+
+OptionInfo error_floor_option() {
+  return {.name = "error_floor",
+          .default_value = 0.01,
+          .help =
+              "part of a value that is added to its standard error, in squares, for its weight in fits: errors "
+              "from few output times are uncertain themselves",
+          .minimum = 0};
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,55 @@
+#pragma once
+/// Quantities of the flow at many places: averaged over planes or shells, or voxel by voxel.
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "grainvdb/measurement.hpp"
+#include "grainvdb/run.hpp"
+#include "measure/field_profile.hpp"
+
+namespace grainvdb {
+
+/// One place, and what was asked for there. Errors are NaN where there are none: for voxels, and for a profile of a
+/// single output time.
+struct StateSample {
+  double position;  ///< along the normal of the planes, or from the axis of the shells [length]
+  double height;    ///< along the axis [length]
+  std::vector<Estimate> values;
+};
+
+/// Some numbers of a state.
+using StateQuantities = std::function<void(const FlowState&, std::span<double>)>;
+
+class StateSamples {
+ public:
+  virtual ~StateSamples() = default;
+  virtual void take(const OutputFields& output) = 0;
+  /// In ascending order of the bins, or as the voxels come. Places where the first of the values is undefined are left
+  /// out.
+  virtual std::vector<StateSample> samples() const = 0;
+  /// The number of output times.
+  virtual std::size_t times() const = 0;
+};
+
+/// bin_options() and `source`: profile or voxels.
+std::vector<OptionInfo> sample_options();
+
+/// What the samples need of the fields; with rotational_fluctuation where `spin` is set.
+std::vector<std::string> sample_fields(bool spin);
+
+/// Samples as the options say. Ratios are not formed where the fields of a voxel would not be: up to pressure_floor,
+/// and up to gd_over_dv.temperature_min or the resolution of velocities.
+std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, std::vector<std::string> fields,
+                                           std::size_t quantities, StateQuantities f);
+
+/// The errors to weigh value `index` of the samples by in a fit, √(s² + (floor y)²); empty, for equal weights, where
+/// any is NaN or 0. The floor keeps an error that came out small by chance from deciding the fit.
+std::vector<double> fit_errors(const std::vector<StateSample>& samples, std::size_t index, double floor);
+/// The option of that floor.
+OptionInfo error_floor_option();
+
+}  // namespace grainvdb

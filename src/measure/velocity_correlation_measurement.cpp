@@ -1,0 +1,139 @@
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "measure/counted_region.hpp"
+#include "measure/fluctuations.hpp"
+#include "measure/grains.hpp"
+#include "measure/structure.hpp"
+#include "measure/velocity_correlation.hpp"
+
+namespace grainvdb {
+namespace {
+
+constexpr double default_reach = 8;  // mean diameters
+constexpr double default_from = 1;
+
+/// C(r) of the bins that are fitted.
+struct Points {
+  std::vector<double> r, c;
+};
+
+class VelocityCorrelationMeasurement : public Measurement {
+ public:
+  explicit VelocityCorrelationMeasurement(const OptionValues& options) : options_(options), region_(options) {}
+
+  void add(const Frame& frame) override {
+    Columns3 position, velocity;
+    for (std::size_t i = 0; i < frame.particles.size(); ++i) {
+      const Vec3 x = wrapped(frame.box, frame.particles.position, i);
+      if (!region_.holds(x)) continue;
+      push_back(position, x);
+      push_back(velocity, vector_at(frame.particles.velocity, i));
+    }
+    if (position[0].empty()) return;
+    if (!correlation_) {
+      const double d = mean_diameter(frame.particles.radius);
+      motion_ = mean_motion(options_, d);
+      from_ = length_option(options_, "fit_from", default_from, d);
+      slabs_.emplace(region_.within(frame.box, frame.particles.position));
+      correlation_.emplace(length_option(options_, "reach", default_reach, d), count_option(options_, "bins"));
+    }
+    correlation_->add(frame.box, position, fluctuations(motion_, position, velocity), *slabs_);
+  }
+
+  std::vector<Table> tables() override {
+    Table table{"velocity_correlation", "correlation of the velocity fluctuations of two grains",
+                "C(r) = <u'(0).u'(r)>/sqrt(<u'(0)^2><u'(r)^2>); fit A (1 - 3r/4R + r^3/16R^3)"};
+    if (!correlation_) {
+      table.remarks.emplace_back(no_grains);
+      return {table};
+    }
+    const VelocityCorrelation& c = *correlation_;
+    TableColumn r{"r", dimension::length, "distance, the middle of the bin"};
+    TableColumn value{"c", dimension::none, "correlation"};
+    TableColumn error{"c_error", dimension::none, "standard error, by leaving out tenths of the material"};
+    TableColumn fit{"fit", dimension::none, "the fitted law"};
+    TableColumn pairs{"pairs", dimension::none, "pairs of grains, in both orders"};
+    for (std::size_t k = 0; k < c.bins(); ++k) {
+      r.values.push_back(c.middle(k));
+      value.values.push_back(c.c(k));
+      error.values.push_back(c.error(k));
+      pairs.values.push_back(static_cast<double>(c.pairs(k)));
+    }
+    const SphereFit law = fitted(value.values);
+    for (const double x : r.values) fit.values.push_back(law.amplitude * sphere_law(x, law.radius));
+    std::vector<double> amplitudes, radii;
+    for (std::size_t slab = 0; slab < Slabs::count; ++slab) {
+      const std::vector<double> without = c.without(slab);
+      if (without.empty()) continue;
+      const SphereFit one = fitted(without);
+      amplitudes.push_back(one.amplitude);
+      radii.push_back(one.radius);
+    }
+    if (!std::isfinite(law.radius)) table.remarks.emplace_back("The law of spheres of influence could not be fitted.");
+    table.numbers = {{.name = "correlation_radius",
+                      .value = law.radius,
+                      .error = jackknife_error(radii),
+                      .dimension = dimension::length,
+                      .description = "radius R of the spheres of influence; C vanishes at 2R"},
+                     {.name = "amplitude",
+                      .value = law.amplitude,
+                      .error = jackknife_error(amplitudes),
+                      .dimension = dimension::none,
+                      .description = "A, the part of the fluctuations that neighbours share"}};
+    table.columns = {std::move(r), std::move(value), std::move(error), std::move(fit), std::move(pairs)};
+    return {table};
+  }
+
+ private:
+  SphereFit fitted(const std::vector<double>& c) const {
+    Points points;
+    for (std::size_t k = 0; k < c.size(); ++k) {
+      if (!std::isfinite(c[k]) || correlation_->middle(k) < from_) continue;
+      points.r.push_back(correlation_->middle(k));
+      points.c.push_back(c[k]);
+    }
+    return fit_sphere_law(points.r, points.c);
+  }
+
+  OptionValues options_;
+  CountedRegion region_;
+  MeanMotion motion_;
+  double from_ = 0;
+  std::optional<Slabs> slabs_;
+  std::optional<VelocityCorrelation> correlation_;
+};
+
+}  // namespace
+
+MeasurementInfo velocity_correlation_measurement() {
+  MeasurementInfo info;
+  info.name = "velocity_correlation";
+  info.description = "correlation of velocity fluctuations with distance, and the radius of what moves together";
+  info.equation = "C(r) = <u'(0).u'(r)>/sqrt(<u'(0)^2><u'(r)^2>)";
+  std::vector<OptionInfo> own{{.name = "reach",
+                               .default_value = 0.0,
+                               .help = "greatest distance [length]; 0: eight mean diameters of the first frame",
+                               .minimum = 0},
+                              {.name = "bins",
+                               .default_value = std::int64_t{40},
+                               .help = "number of equal bins of distance",
+                               .minimum = 1,
+                               .maximum = 1e6},
+                              {.name = "fit_from",
+                               .default_value = 0.0,
+                               .help = "least distance that is fitted [length]; 0: one mean diameter",
+                               .minimum = 0}};
+  for (OptionInfo& option : mean_motion_options()) own.push_back(std::move(option));
+  info.options = CountedRegion::options(std::move(own));
+  info.conflict = CountedRegion::conflict;
+  info.needs = [](const OptionValues&) { return MeasurementNeeds{Column::radius | Column::velocity, {}}; };
+  info.make = [](const MeasurementSetting& setting) {
+    return std::make_unique<VelocityCorrelationMeasurement>(setting.options);
+  };
+  return info;
+}
+
+}  // namespace grainvdb

@@ -1,0 +1,141 @@
+#include "pipeline/measure_pass.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include <tbb/task_arena.h>
+
+#include "base/ordered_pipeline.hpp"
+#include "bin/half_step.hpp"
+#include "grainvdb/memory_model.hpp"
+#include "pipeline/material.hpp"
+#include "pipeline/measure_needs.hpp"
+#include "pipeline/provenance.hpp"
+
+namespace grainvdb {
+namespace {
+
+/// All contacts, with the forces of the run, and the particles that count as material.
+Frame selected(Frame frame, const Pipeline& pipeline) {
+  if (const auto& half_step = pipeline.input.contacts.half_step; half_step && frame.contacts.size() > 0)
+    correct_half_step(*half_step, frame);
+  frame.particles.force = {};
+  apply_selection(pipeline.select, frame.box, frame.particles);
+  return frame;
+}
+
+/// Those in the averages, where there are any.
+std::vector<std::size_t> up_to_stop(std::vector<std::size_t> frames, const RunReport& report) {
+  if (report.stop) frames.resize(report.stop->frames);
+  return frames;
+}
+
+std::vector<std::size_t> good_frames(std::vector<std::size_t> frames, const FrameSource& source,
+                                     const RunReport& report) {
+  std::set<std::int64_t> bad;
+  for (const BadFrame& frame : report.bad_frames)
+    if (frame.step) bad.insert(*frame.step);
+  std::erase_if(frames, [&](std::size_t k) { return bad.contains(source.frames()[k].step); });
+  return frames;
+}
+
+void add_bad_frames(const std::vector<BadFrame>& more, RunReport& report) {
+  for (const BadFrame& frame : more)
+    if (std::none_of(report.bad_frames.begin(), report.bad_frames.end(),
+                     [&](const BadFrame& known) { return to_string(known) == to_string(frame); }))
+      report.bad_frames.push_back(frame);
+}
+
+}  // namespace
+
+MeasurePass::MeasurePass(const Pipeline& pipeline, const Plan& plan, FrameSource& source)
+    : pipeline_(pipeline),
+      plan_(plan),
+      source_(source),
+      wanted_(select_frames(pipeline.frames, source.frames().size())),
+      lattice_(check_measure_against_input(pipeline, source)) {
+  for (const MeasurementInfo& info : measurement_registry()) {
+    const auto it = pipeline.measure.find(info.name);
+    if (it == pipeline.measure.end()) continue;
+    const MeasurementSetting setting{it->second,
+                                     pipeline.stages,
+                                     lattice_,
+                                     LucyKernel(pipeline.cutoff > 0 ? pipeline.cutoff : 1),
+                                     source.frames()[wanted_.front()].box,
+                                     pipeline.input.density};
+    entries_.push_back({info.needs(it->second), info.make(setting)});
+  }
+}
+
+void MeasurePass::take(const OutputFields& output) {
+  clock_.time("measure", [&] {
+    for (const Entry& entry : entries_)
+      if (!entry.needs.fields.empty()) entry.measurement->take(output);
+  });
+}
+
+void MeasurePass::measure(const Frame& frame) {
+  // What runs in parallel within a measurement does not begin another frame meanwhile.
+  tbb::this_task_arena::isolate([&] {
+    clock_.time("measure", [&] {
+      for (const Entry& entry : entries_)
+        if (entry.needs.particles) entry.measurement->add(frame);
+    });
+  });
+  ++measured_;
+}
+
+void MeasurePass::visit_frames(const RunReport& report, const std::function<void(const Progress&)>& progress) {
+  const auto columns = measured_columns(pipeline_);
+  if (!columns) return;
+  const std::vector<std::size_t> frames = good_frames(up_to_stop(wanted_, report), source_, report);
+  Progress now{0, frames.size(), "frames to measure"};
+  ordered_pipeline(
+      frames.size(), std::max<std::size_t>(1, std::min(frames_in_flight(pipeline_.limits), frames.size())),
+      [&](std::size_t i) {
+        return clock_.time("read to measure",
+                           [&] { return attempt([&] { return source_.read(frames[i], *columns); }); });
+      },
+      [&](std::size_t, OrFault<Frame> frame) {
+        if (!frame.value) return frame;
+        return attempt([&] { return selected(std::move(*frame.value), pipeline_); });
+      },
+      [&](std::size_t i, const OrFault<Frame>& frame) {
+        if (frame.value) {
+          measure(*frame.value);
+        } else {
+          if (pipeline_.input.on_error == OnError::error) std::rethrow_exception(frame.fault);
+          bad_.add(frames[i], frame.fault);
+        }
+        ++now.frames_done;
+        if (progress) progress(now);
+      });
+  if (measured_ == 0)
+    throw InputError({{source_.frames()[wanted_.front()].file, 0},
+                      "every frame is bad, and input.on_error leaves them all out",
+                      {},
+                      "at least one frame that can be used",
+                      {}});
+}
+
+void MeasurePass::commit(RunReport& report) {
+  clock_.time("measure", [&] {
+    for (const Entry& entry : entries_)
+      for (Table& table : entry.measurement->tables()) report.tables.push_back(std::move(table));
+  });
+  const UnitSystem& units = source_.units();
+  for (Table& table : report.tables) {
+    for (TableColumn& column : table.columns) column.unit = units.symbol(column.dimension);
+    for (Quantity& number : table.numbers) number.unit = units.symbol(number.dimension);
+  }
+  add_bad_frames(bad_.list(source_), report);
+  report.tables_from = provenance_of(pipeline_, plan_, source_, up_to_stop(wanted_, report), report);
+  report.frames = std::max(report.frames, measured_);
+  report.seconds.insert(report.seconds.end(), clock_.seconds().begin(), clock_.seconds().end());
+  report.wall_seconds = std::max(report.wall_seconds, clock_.passed());
+  report.read = source_.counters();
+}
+
+}  // namespace grainvdb

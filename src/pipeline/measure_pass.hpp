@@ -1,0 +1,46 @@
+#pragma once
+/// The measurements of a pipeline: what they see of the fields as these come, and their own pass over the frames, which
+/// reads nothing but what they need.
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "grainvdb/measurement.hpp"
+#include "grainvdb/run.hpp"
+#include "pipeline/bad_frames.hpp"
+#include "pipeline/stopwatch.hpp"
+
+namespace grainvdb {
+
+class MeasurePass {
+ public:
+  /// Makes the checks of the input. All arguments must outlive the pass. Throws as check_measure_against_input does.
+  MeasurePass(const Pipeline& pipeline, const Plan& plan, FrameSource& source);
+
+  /// The fields of one output time, in order of time.
+  void take(const OutputFields& output);
+  /// Reads the frames for the measurements of frames: those that are not bad by the report, up to where averaging
+  /// ended. Without such measurements it reads nothing.
+  void visit_frames(const RunReport& report, const std::function<void(const Progress&)>& progress);
+  /// Adds the tables to the report, and the frames that were found to be bad.
+  void commit(RunReport& report);
+
+ private:
+  struct Entry {
+    MeasurementNeeds needs;
+    std::unique_ptr<Measurement> measurement;
+  };
+  void measure(const Frame& frame);
+
+  const Pipeline& pipeline_;
+  const Plan& plan_;
+  FrameSource& source_;
+  std::vector<std::size_t> wanted_;
+  Lattice lattice_;
+  std::vector<Entry> entries_;
+  BadFrames bad_;
+  std::size_t measured_ = 0;  ///< frames
+  Stopwatch clock_;
+};
+
+}  // namespace grainvdb
