@@ -1,12 +1,9 @@
 #include <algorithm>
 #include <iostream>
-#include <memory>
 
 #include "cli/commands.hpp"
-#include "cli/describe_options.hpp"
-#include "grainvdb/error.hpp"
+#include "cli/listing.hpp"
 #include "grainvdb/measurement.hpp"
-#include "pipeline/text.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -18,12 +15,6 @@ constexpr const char* footer = R"(Examples:
   grainvdb measurements --json
 
 Each stands in the section 'measure' of a pipeline file under its name, with its options.)";
-
-struct Options {
-  std::string name;
-  bool json = false;
-  bool markdown = false;
-};
 
 Json describe(const MeasurementInfo& info) {
   OptionValues defaults;
@@ -64,27 +55,10 @@ void print_markdown(const Json& measurements) {
               << cell(options_in_short(m["options"])) << " |\n";
 }
 
-void list(const Options& options) {
-  Json measurements = Json::array();
-  std::vector<std::string> names;
-  for (const MeasurementInfo& info : measurement_registry()) {
-    names.push_back(info.name);
-    if (options.name.empty() || options.name == info.name) measurements.push_back(describe(info));
-  }
-  if (measurements.empty())
-    throw ConfigError({{},
-                       "there is no measurement " + quote_text(options.name),
-                       {},
-                       join_choices(names),
-                       did_you_mean(options.name, names)});
-  if (options.json)
-    std::cout << measurements.dump(2) << '\n';
-  else if (options.markdown)
-    print_markdown(measurements);
-  else if (options.name.empty())
-    print_table(measurements);
-  else
-    print_details(measurements.front());
+void list(const ListRequest& request) {
+  Json all = Json::array();
+  for (const MeasurementInfo& info : measurement_registry()) all.push_back(describe(info));
+  print_list(request, "measurement", all, {print_table, print_markdown, print_details});
 }
 
 }  // namespace
@@ -92,12 +66,9 @@ void list(const Options& options) {
 void add_measurements(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("measurements", "List the tables that can be made, with equations and options");
-  const auto options = std::make_shared<Options>();
-  command->add_option("name", options->name, "One measurement to show in full")->type_name("NAME");
-  CLI::Option* json = command->add_flag("--json", options->json, "Print as JSON");
-  command->add_flag("--markdown", options->markdown, "Print as a Markdown table")->excludes(json);
+  const auto request = add_list_options(*command, "measurement");
   command->footer(footer);
-  command->callback([options] { list(*options); });
+  command->callback([request] { list(*request); });
 }
 
 }  // namespace grainvdb::cli

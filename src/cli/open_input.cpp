@@ -6,8 +6,7 @@ namespace grainvdb::cli {
 
 InputSpec needed_input(const Pipeline& pipeline, const Plan& plan) {
   InputSpec spec = pipeline.input;
-  const ColumnSet columns = all_columns(plan) | measured_columns(pipeline).value_or(ColumnSet());
-  if (!columns.has(Column::contacts)) spec.contacts = {};
+  if (!columns_read(plan, pipeline).has(Column::contacts)) spec.contacts = {};
   return spec;
 }
 

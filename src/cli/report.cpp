@@ -8,6 +8,7 @@
 
 #include <sys/resource.h>
 
+#include "cli/survey.hpp"
 #include "grainvdb/mask.hpp"
 #include "pipeline/number.hpp"
 
@@ -58,21 +59,14 @@ std::string describe_trace(const TraceReport& trace) {
          "')['particles/tracers']))\"\n";
 }
 
-/// Four digits: the tables have them all.
-std::string rounded(double value) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << std::setprecision(4) << value;
-  return text.str();
-}
-
+/// Numbers are shortened: the tables have them whole.
 std::string describe_table(const Table& table) {
   std::string text = "table " + table.name;
   if (!table.columns.empty()) text += ": " + counted(table.columns.front().values.size(), "row");
   text += '\n';
   for (const Quantity& q : table.numbers) {
-    text += "  " + q.name + ' ' + rounded(q.value);
-    if (!std::isnan(q.error)) text += " +- " + rounded(q.error);
+    text += "  " + q.name + ' ' + short_number(q.value);
+    if (!std::isnan(q.error)) text += " +- " + short_number(q.error);
     text += (q.unit == "1" ? "" : ' ' + q.unit) + "  (" + q.description + ")\n";
   }
   for (const std::string& remark : table.remarks) text += "  note: " + remark + '\n';

@@ -1,12 +1,10 @@
 #include <iomanip>
 #include <iostream>
-#include <memory>
 
 #include "cli/commands.hpp"
-#include "cli/describe_options.hpp"
+#include "cli/listing.hpp"
 #include "grainvdb/plan.hpp"
 #include "grainvdb/units.hpp"
-#include "pipeline/text.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -18,12 +16,6 @@ constexpr const char* footer = R"(Examples:
   grainvdb stages --json
 
 Each stage makes the field of its name. Units are those of an SI run; other runs have their own.)";
-
-struct Options {
-  std::string name;
-  bool json = false;
-  bool markdown = false;
-};
 
 // What asking for the field alone comes to, with all options at their defaults.
 Plan plan_for(const Stage& stage) {
@@ -86,40 +78,19 @@ void print_markdown(const Json& stages) {
   }
 }
 
-void list_stages(const Options& options) {
-  const StageRegistry& registry = StageRegistry::standard();
-  Json stages = Json::array();
-  std::vector<std::string> names;
-  for (const Stage& stage : registry.stages()) {
-    names.push_back(stage.name);
-    if (options.name.empty() || options.name == stage.name) stages.push_back(describe_stage(stage));
-  }
-  if (stages.empty())
-    throw ConfigError({{},
-                       "there is no stage " + quote_text(options.name),
-                       {},
-                       join_choices(names),
-                       did_you_mean(options.name, names)});
-  if (options.json)
-    std::cout << stages.dump(2) << '\n';
-  else if (options.markdown)
-    print_markdown(stages);
-  else if (options.name.empty())
-    print_table(stages);
-  else
-    print_details(stages.front());
+void list_stages(const ListRequest& request) {
+  Json all = Json::array();
+  for (const Stage& stage : StageRegistry::standard().stages()) all.push_back(describe_stage(stage));
+  print_list(request, "stage", all, {print_table, print_markdown, print_details});
 }
 
 }  // namespace
 
 void add_stages(CLI::App& app) {
   CLI::App* command = app.add_subcommand("stages", "List the fields that can be computed, with equations and options");
-  const auto options = std::make_shared<Options>();
-  command->add_option("name", options->name, "One stage to show in full")->type_name("NAME");
-  CLI::Option* json = command->add_flag("--json", options->json, "Print as JSON");
-  command->add_flag("--markdown", options->markdown, "Print as a Markdown table")->excludes(json);
+  const auto request = add_list_options(*command, "stage");
   command->footer(footer);
-  command->callback([options] { list_stages(*options); });
+  command->callback([request] { list_stages(*request); });
 }
 
 }  // namespace grainvdb::cli

@@ -1,7 +1,6 @@
 #include "measure/time_sums.hpp"
 
-#include <cmath>
-#include <limits>
+#include "measure/jackknife_error.hpp"
 
 namespace grainvdb {
 
@@ -9,19 +8,16 @@ std::vector<Estimate> jackknife(std::size_t times, std::size_t outputs,
                                 const std::function<void(std::optional<std::size_t>, std::span<double>)>& f) {
   std::vector<double> values(outputs);
   f({}, values);
-  std::vector<Estimate> all;
-  for (const double value : values) all.push_back({value, std::numeric_limits<double>::quiet_NaN()});
-  if (times < 2) return all;
-
-  std::vector<std::vector<double>> without(times, std::vector<double>(outputs));
-  for (std::size_t t = 0; t < times; ++t) f(t, without[t]);
-  const double n = static_cast<double>(times);
-  for (std::size_t k = 0; k < outputs; ++k) {
-    double mean = 0, squares = 0;
-    for (const auto& part : without) mean += part[k] / n;
-    for (const auto& part : without) squares += (part[k] - mean) * (part[k] - mean);
-    all[k].error = std::sqrt((n - 1) / n * squares);
+  std::vector<std::vector<double>> without(outputs, std::vector<double>(times));  // [output][time]
+  if (times > 1) {
+    std::vector<double> left(outputs);
+    for (std::size_t t = 0; t < times; ++t) {
+      f(t, left);
+      for (std::size_t k = 0; k < outputs; ++k) without[k][t] = left[k];
+    }
   }
+  std::vector<Estimate> all;
+  for (std::size_t k = 0; k < outputs; ++k) all.push_back({values[k], jackknife_error(without[k])});
   return all;
 }
 

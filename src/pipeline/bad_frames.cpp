@@ -1,8 +1,18 @@
 #include "pipeline/bad_frames.hpp"
 
 #include <cstdint>
+#include <set>
 
 namespace grainvdb {
+
+std::vector<std::size_t> without_bad(std::vector<std::size_t> frames, const FrameSource& source,
+                                     const std::vector<BadFrame>& bad) {
+  std::set<std::int64_t> steps;
+  for (const BadFrame& frame : bad)
+    if (frame.step) steps.insert(*frame.step);
+  std::erase_if(frames, [&](std::size_t k) { return steps.contains(source.frames()[k].step); });
+  return frames;
+}
 
 void BadFrames::add(std::size_t frame, const std::exception_ptr& fault) {
   try {

@@ -32,6 +32,10 @@ OrFault<std::invoke_result_t<F&>> attempt(F f) {
   }
 }
 
+/// Those of the frames, by index into the source, that are none of the bad ones.
+std::vector<std::size_t> without_bad(std::vector<std::size_t> frames, const FrameSource& source,
+                                     const std::vector<BadFrame>& bad);
+
 class BadFrames {
  public:
   bool contains(std::size_t frame) const { return reasons_.contains(frame); }

@@ -87,14 +87,10 @@ std::string describe_sweep(const Sweep& sweep) {
 }
 
 std::vector<std::string> columns_not_read(const Plan& plan, const Pipeline& pipeline) {
-  std::set<std::string> read;
-  for (const Sweep& sweep : plan.sweeps)
-    for (const std::string& name : column_names(sweep.columns)) read.insert(name);
-  if (const auto measured = measured_columns(pipeline))
-    for (const std::string& name : column_names(*measured)) read.insert(name);
+  const std::vector<std::string> read = column_names(columns_read(plan, pipeline));
   std::vector<std::string> rest;
   for (const std::string& name : column_names(every_column()))
-    if (!read.contains(name)) rest.push_back(name);
+    if (std::find(read.begin(), read.end(), name) == read.end()) rest.push_back(name);
   return rest;
 }
 

@@ -31,11 +31,15 @@ void apply_selection(const Selection& selection, const Box& box, Particles& part
   keep_rows(particles.type, rows);
 }
 
-Material make_material(Frame frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted) {
-  Material material;
+void use_forces_of_run(const Pipeline& pipeline, Frame& frame) {
   if (const auto& half_step = pipeline.input.contacts.half_step; half_step && frame.contacts.size() > 0)
     correct_half_step(*half_step, frame);
   frame.particles.force = {};
+}
+
+Material make_material(Frame frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted) {
+  Material material;
+  use_forces_of_run(pipeline, frame);
   material.branches = make_branch_sets(frame, pipeline, wanted);
   material.file = std::move(frame.file);
   material.step = frame.step;

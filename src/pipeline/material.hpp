@@ -23,6 +23,10 @@ struct Material {
 /// Keeps the particles that the selection counts as material.
 void apply_selection(const Selection& selection, const Box& box, Particles& particles);
 
+/// Makes of dumped contact forces those of the run, where the input says how; nothing else needs the forces on
+/// particles, which are dropped.
+void use_forces_of_run(const Pipeline& pipeline, Frame& frame);
+
 /// The material by the pipeline's selection and walls, with the sets of half branches that are wanted. Throws
 /// InputError for contacts that do not fit the particles.
 Material make_material(Frame frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted);

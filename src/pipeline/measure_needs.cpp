@@ -27,6 +27,10 @@ std::optional<ColumnSet> measured_columns(const Pipeline& pipeline) {
   return all;
 }
 
+ColumnSet columns_read(const Plan& plan, const Pipeline& pipeline) {
+  return all_columns(plan) | measured_columns(pipeline).value_or(ColumnSet());
+}
+
 bool measures_fields(const Pipeline& pipeline) {
   return any_needs(pipeline, [](const MeasurementNeeds& needs) { return !needs.fields.empty(); });
 }

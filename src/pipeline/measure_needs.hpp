@@ -4,12 +4,16 @@
 
 #include "grainvdb/measurement.hpp"
 #include "grainvdb/pipeline.hpp"
+#include "grainvdb/plan.hpp"
 
 namespace grainvdb {
 
 /// What must be read of every frame for them, what the selection and the half-step correction need included; nothing
 /// where none looks at frames.
 std::optional<ColumnSet> measured_columns(const Pipeline& pipeline);
+
+/// What is read of frames for fields and measurements.
+ColumnSet columns_read(const Plan& plan, const Pipeline& pipeline);
 
 /// Whether one of them needs fields.
 bool measures_fields(const Pipeline& pipeline);

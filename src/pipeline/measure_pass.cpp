@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include <tbb/task_arena.h>
 
 #include "base/ordered_pipeline.hpp"
-#include "bin/half_step.hpp"
 #include "grainvdb/memory_model.hpp"
 #include "pipeline/material.hpp"
 #include "pipeline/measure_needs.hpp"
@@ -17,11 +15,9 @@
 namespace grainvdb {
 namespace {
 
-/// All contacts, with the forces of the run, and the particles that count as material.
+/// All contacts, and the particles that count as material.
 Frame selected(Frame frame, const Pipeline& pipeline) {
-  if (const auto& half_step = pipeline.input.contacts.half_step; half_step && frame.contacts.size() > 0)
-    correct_half_step(*half_step, frame);
-  frame.particles.force = {};
+  use_forces_of_run(pipeline, frame);
   apply_selection(pipeline.select, frame.box, frame.particles);
   return frame;
 }
@@ -29,15 +25,6 @@ Frame selected(Frame frame, const Pipeline& pipeline) {
 /// Those in the averages, where there are any.
 std::vector<std::size_t> up_to_stop(std::vector<std::size_t> frames, const RunReport& report) {
   if (report.stop) frames.resize(report.stop->frames);
-  return frames;
-}
-
-std::vector<std::size_t> good_frames(std::vector<std::size_t> frames, const FrameSource& source,
-                                     const RunReport& report) {
-  std::set<std::int64_t> bad;
-  for (const BadFrame& frame : report.bad_frames)
-    if (frame.step) bad.insert(*frame.step);
-  std::erase_if(frames, [&](std::size_t k) { return bad.contains(source.frames()[k].step); });
   return frames;
 }
 
@@ -90,7 +77,7 @@ void MeasurePass::measure(const Frame& frame) {
 void MeasurePass::visit_frames(const RunReport& report, const std::function<void(const Progress&)>& progress) {
   const auto columns = measured_columns(pipeline_);
   if (!columns) return;
-  const std::vector<std::size_t> frames = good_frames(up_to_stop(wanted_, report), source_, report);
+  const std::vector<std::size_t> frames = without_bad(up_to_stop(wanted_, report), source_, report.bad_frames);
   Progress now{0, frames.size(), "frames to measure"};
   ordered_pipeline(
       frames.size(), std::max<std::size_t>(1, std::min(frames_in_flight(pipeline_.limits), frames.size())),

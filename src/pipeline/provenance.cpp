@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <iterator>
-#include <set>
 #include <string>
 
 #include "grainvdb/kernel.hpp"
 #include "grainvdb/measurement.hpp"
 #include "grainvdb/version.hpp"
+#include "pipeline/bad_frames.hpp"
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/number.hpp"
 
@@ -30,18 +29,10 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
   std::vector<std::size_t> skipped;
   for (std::size_t k = 0; k < source.frames().size(); ++k)
     if (!std::binary_search(frames.begin(), frames.end(), k)) skipped.push_back(k);
-  std::set<std::int64_t> bad;
-  for (const BadFrame& frame : report.bad_frames)
-    if (frame.step) bad.insert(*frame.step);
-  std::vector<std::size_t> averaged;
-  std::copy_if(frames.begin(), frames.end(), std::back_inserter(averaged),
-               [&](std::size_t k) { return !bad.contains(source.frames()[k].step); });
+  const std::vector<std::size_t> averaged = without_bad({frames.begin(), frames.end()}, source, report.bad_frames);
   const auto step = [&](std::size_t k) { return std::to_string(source.frames()[k].step); };
-  std::set<std::string> columns;
-  for (const Sweep& sweep : plan.sweeps)
-    for (const std::string& name : column_names(sweep.columns)) columns.insert(name);
-  if (const auto measured = measured_columns(pipeline))
-    for (const std::string& name : column_names(*measured)) columns.insert(name);
+  std::vector<std::string> columns = column_names(columns_read(plan, pipeline));
+  std::sort(columns.begin(), columns.end());
   Provenance all = key_of_run(pipeline, source);
   all.insert(all.end(),
              {{"units", source.units().name},

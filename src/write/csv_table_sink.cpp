@@ -1,22 +1,19 @@
 #include "write/csv_table_sink.hpp"
 
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <vector>
 
 #include "write/atomic_file.hpp"
+#include "write/number_text.hpp"
 
 namespace grainvdb {
 namespace {
 
-/// The shortest text that reads back as the same number, whatever the locale.
 std::string number(double value) {
-  if (std::isnan(value)) return "nan";  // without the sign that to_chars would show
-  std::array<char, 32> buffer;
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
+  std::string text;
+  append_number(text, value);
+  return text;
 }
 
 /// In quotes where commas or quotes are in it (RFC 4180).

@@ -11,6 +11,7 @@
 #include "grainvdb/version.hpp"
 #include "write/atomic_file.hpp"
 #include "write/hdf5_file.hpp"
+#include "write/hdf5_provenance.hpp"
 #include "write/tracer_columns.hpp"
 #include "write/tracer_sidecar.hpp"
 
@@ -220,8 +221,7 @@ void H5mdSink::commit(const Provenance& provenance) {
     hdf5_->text_attribute(group + "/stop_time", "long_name", "until when a tracer could be followed; NaN: to the end");
     hdf5_->write<double>(group + "/stop_time", stop_time_);
   }
-  hdf5_->create_group("/provenance");
-  for (const auto& [key, text] : provenance) hdf5_->create_text("/provenance/" + key, text);
+  write_provenance(*hdf5_, provenance);
   hdf5_->close();
   file_->finish();
 

@@ -16,6 +16,7 @@
 #include "write/atomic_file.hpp"
 #include "write/chunk_grid.hpp"
 #include "write/hdf5_file.hpp"
+#include "write/hdf5_provenance.hpp"
 #include "write/output_names.hpp"
 #include "write/xdmf_sidecar.hpp"
 
@@ -275,9 +276,8 @@ void Hdf5Sink::write_times() {
 void Hdf5Sink::commit(const Provenance& provenance) {
   if (!hdf5_ || times_.size() != layout_->time_count) throw std::logic_error("an output was committed before its end");
   write_times();
-  hdf5_->create_group("/provenance");
+  write_provenance(*hdf5_, provenance);
   for (const auto& [key, text] : provenance) {
-    hdf5_->create_text("/provenance/" + key, text);
     if (key == "version") hdf5_->text_attribute("/", "grainvdb_version", text);
     if (key == "averaging") hdf5_->text_attribute("/", "averaging", text);
   }

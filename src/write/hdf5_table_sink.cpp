@@ -8,6 +8,7 @@
 
 #include "write/atomic_file.hpp"
 #include "write/hdf5_file.hpp"
+#include "write/hdf5_provenance.hpp"
 
 namespace grainvdb {
 namespace {
@@ -69,8 +70,7 @@ class Hdf5TableSink final : public TableSink {
       write_columns(hdf5, group, table);
       write_numbers(hdf5, group, table);
     }
-    hdf5.create_group("/provenance");
-    for (const auto& [key, text] : provenance) hdf5.create_text("/provenance/" + key, text);
+    write_provenance(hdf5, provenance);
     hdf5.close();
     file.finish();
     file.publish();

@@ -1,8 +1,5 @@
 #include "write/lammps_tracer_sink.hpp"
 
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +8,7 @@
 
 #include "grainvdb/units.hpp"
 #include "write/atomic_file.hpp"
+#include "write/number_text.hpp"
 #include "write/tracer_columns.hpp"
 
 namespace grainvdb {
@@ -62,17 +60,10 @@ void LammpsTracerSink::begin(const TracerLayout& layout) {
   file_ = std::make_unique<AtomicFile>(path_);
 }
 
-/// The shortest text that reads back as the same number, whatever the locale, and a blank.
+/// A number and a blank.
 template <class T>
 void LammpsTracerSink::add(T value) {
-  if constexpr (std::is_floating_point_v<T>) {
-    if (std::isnan(value)) {  // without the sign that to_chars would show
-      text_ += "nan ";
-      return;
-    }
-  }
-  std::array<char, 32> buffer;
-  text_.append(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr);
+  append_number(text_, value);
   text_ += ' ';
 }
 

@@ -1,10 +1,46 @@
-#include "cli/describe_options.hpp"
+#include "cli/listing.hpp"
 
 #include <cmath>
 #include <iostream>
 #include <variant>
+#include <vector>
+
+#include "grainvdb/error.hpp"
+#include "pipeline/text.hpp"
 
 namespace grainvdb::cli {
+
+std::shared_ptr<ListRequest> add_list_options(CLI::App& command, const std::string& what) {
+  const auto request = std::make_shared<ListRequest>();
+  command.add_option("name", request->name, "One " + what + " to show in full")->type_name("NAME");
+  CLI::Option* json = command.add_flag("--json", request->json, "Print as JSON");
+  command.add_flag("--markdown", request->markdown, "Print as a Markdown table")->excludes(json);
+  return request;
+}
+
+void print_list(const ListRequest& request, const std::string& what, const Json& entries,
+                const ListPrinters& printers) {
+  Json wanted = Json::array();
+  std::vector<std::string> names;
+  for (const Json& entry : entries) {
+    names.push_back(entry["name"]);
+    if (request.name.empty() || request.name == names.back()) wanted.push_back(entry);
+  }
+  if (wanted.empty())
+    throw ConfigError({{},
+                       "there is no " + what + ' ' + quote_text(request.name),
+                       {},
+                       join_choices(names),
+                       did_you_mean(request.name, names)});
+  if (request.json)
+    std::cout << wanted.dump(2) << '\n';
+  else if (request.markdown)
+    printers.markdown(wanted);
+  else if (request.name.empty())
+    printers.table(wanted);
+  else
+    printers.details(wanted.front());
+}
 
 Json describe_option(const OptionInfo& option) {
   static constexpr const char* types[] = {"boolean", "integer", "number", "text", "list of texts", "list of numbers"};
