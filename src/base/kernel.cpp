@@ -8,12 +8,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/vec3.hpp"
+
 namespace grainvdb {
 namespace {
-
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // W c³ / K at (r/c)² = q2, K = 105/(16 π).
 double shape(double q2) {

@@ -7,12 +7,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "base/vec3.hpp"
+
 namespace grainvdb {
 namespace {
 
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 Vec3 combined(double s, const Vec3& a, double t, const Vec3& b) {
   return {s * a[0] + t * b[0], s * a[1] + t * b[1], s * a[2] + t * b[2]};
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "base/vec3.hpp"
 #include "bin/particle_rows.hpp"
 
 namespace grainvdb {
@@ -18,10 +19,6 @@ constexpr double sliding = 0.9999;
 
 double square(double x) {
   return x * x;
-}
-
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 class Correction {

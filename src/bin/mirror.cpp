@@ -4,12 +4,10 @@
 #include <cmath>
 #include <cstddef>
 
+#include "base/vec3.hpp"
+
 namespace grainvdb {
 namespace {
-
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 double distance(const Wall& plane, const Vec3& x) {
   return dot({x[0] - plane.point[0], x[1] - plane.point[1], x[2] - plane.point[2]}, plane.direction);

@@ -5,7 +5,7 @@
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* completion_footer = R"(Examples:
   source <(grainvdb completion)
   grainvdb completion > ~/.local/share/bash-completion/completions/grainvdb)";
 
@@ -59,7 +59,7 @@ void write_completion(std::ostream& out, const CLI::App& app) {
 
 void add_completion(CLI::App& app) {
   CLI::App* command = app.add_subcommand("completion", "Print a script that lets bash complete commands and options");
-  command->footer(footer);
+  command->footer(completion_footer);
   command->callback([&app] { write_completion(std::cout, app); });
 }
 

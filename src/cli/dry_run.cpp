@@ -9,6 +9,7 @@
 #include "grainvdb/memory_model.hpp"
 #include "grainvdb/run.hpp"
 #include "grainvdb/topology.hpp"
+#include "pipeline/number.hpp"
 #include "pipeline/unless_bad.hpp"
 
 namespace grainvdb::cli {

@@ -11,20 +11,20 @@
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* graph_footer = R"(Examples:
   grainvdb graph pipelines/shear_cell.yaml
   grainvdb graph pipelines/shear_cell.yaml --set output.fields=[phi]
   grainvdb graph pipelines/shear_cell.yaml --dot | dot -Tsvg > graph.svg
 
 The dumps are not opened.)";
 
-struct Options {
+struct GraphOptions {
   PipelineArguments pipeline;
   bool dot = false;
 };
 
 // The digraph of stages is the same at each scale.
-void print_graph(const Options& options) {
+void print_graph(const GraphOptions& options) {
   const std::vector<Pipeline> pipelines = at_scales(load_pipeline(options.pipeline.file, options.pipeline.settings()));
   std::vector<Plan> plans;
   for (const Pipeline& pipeline : pipelines) plans.push_back(make_plan(pipeline));
@@ -45,10 +45,10 @@ void print_graph(const Options& options) {
 
 void add_graph(CLI::App& app) {
   CLI::App* command = app.add_subcommand("graph", "Show what a pipeline would read, compute and write");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<GraphOptions>();
   add_pipeline_arguments(*command, options->pipeline);
   command->add_flag("--dot", options->dot, "Print a Graphviz digraph");
-  command->footer(footer);
+  command->footer(graph_footer);
   command->callback([options] { print_graph(*options); });
 }
 

@@ -6,24 +6,31 @@
 #include <sstream>
 
 #include "cli/commands.hpp"
+#include "cli/dry_run.hpp"
+#include "cli/open_input.hpp"
+#include "cli/report.hpp"
 #include "cli/survey.hpp"
 #include "grainvdb/frame_source.hpp"
+#include "grainvdb/scales.hpp"
 #include "pipeline/number.hpp"
 
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* info_footer = R"(Examples:
   grainvdb info dumps/
   grainvdb info 'dumps/dump*.liggghts' --contacts 'dumps/contacts*.liggghts'
   grainvdb info run.dump.gz --list
+  grainvdb info dumps/ --pipeline pipelines/shear_cell.yaml
 
 Headers are read of every frame, grains of the last one. A type flows unless all its grains rest or have one velocity,
-as those of walls do; the suggestion is for the grains that flow. `grainvdb init` makes a pipeline file of it.)";
+as those of walls do; the suggestion is for the grains that flow. `grainvdb init` makes a pipeline file of it. With
+--pipeline one frame is computed, and what all would take is said.)";
 
-struct Options {
+struct InfoOptions {
   InputSpec input;
   bool list = false;
+  std::string pipeline;  ///< file; empty for none
 };
 
 std::string frame_text(const FrameInfo& frame) {
@@ -111,7 +118,21 @@ void print_suggestion(const Survey& survey, const Box& box) {
             << '\n';
 }
 
-void info(const Options& options) {
+/// What a pipeline would take on these dumps instead of its own.
+void print_estimates(const InfoOptions& options) {
+  Pipeline pipeline = load_pipeline(options.pipeline, {});
+  pipeline.input.particles = options.input.particles;
+  if (!options.input.contacts.files.empty()) pipeline.input.contacts.files = options.input.contacts.files;
+  if (options.input.dt) pipeline.input.dt = options.input.dt;
+  if (options.input.periodic) pipeline.input.periodic = options.input.periodic;
+  for (const Pipeline& p : at_scales(pipeline)) {
+    const Plan plan = make_plan(p);
+    std::cout << "with " << options.pipeline << (pipeline.scales.empty() ? "" : ", " + scale_name(p)) << ":\n"
+              << estimate(p, plan, *open_input(p, plan));
+  }
+}
+
+void info(const InfoOptions& options) {
   const auto source = open_dumps(options.input);
   print_frames(source->frames(), options.list);
   print_columns("columns", source->particle_columns());
@@ -125,13 +146,14 @@ void info(const Options& options) {
   const std::uintmax_t bytes = std::accumulate(files.begin(), files.end(), std::uintmax_t{0},
                                                [](std::uintmax_t sum, const auto& file) { return sum + file.second; });
   std::cout << "files: " << files.size() << ", " << bytes << " bytes\n";
+  if (!options.pipeline.empty()) print_estimates(options);
 }
 
 }  // namespace
 
 void add_info(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Say what is in dump files");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InfoOptions>();
   command->add_option("dumps", options->input.particles, "Particle dumps: files, folders or patterns")
       ->required()
       ->type_name("DUMPS");
@@ -143,7 +165,9 @@ void add_info(CLI::App& app) {
   command->add_option("--periodic", options->input.periodic, "Periodic axes, such as xy, for dumps that do not say")
       ->type_name("AXES");
   command->add_flag("--list", options->list, "List every frame");
-  command->footer(footer);
+  command->add_option("--pipeline", options->pipeline, "Estimate memory and time of this pipeline on these dumps")
+      ->type_name("FILE");
+  command->footer(info_footer);
   command->callback([options] { info(*options); });
 }
 

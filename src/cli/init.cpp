@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* init_footer = R"(Examples:
   grainvdb init dumps/
   grainvdb init 'post/dump*.liggghts' --contacts 'post/contacts*.liggghts' --contact-compute pos id force contactPoint delta \
       --units si --dt 1e-6 --output shear.yaml
@@ -25,7 +25,7 @@ constexpr const char* footer = R"(Examples:
 The file names the grains that flow as material, a kernel of three mean diameters, voxels of half a diameter that fit the
 periodic box, and the common fields for which the dumps have what they need. It is checked as `grainvdb validate` does.)";
 
-struct Options {
+struct InitOptions {
   InputSpec input;
   std::string file = "pipeline.yaml";
 };
@@ -113,7 +113,7 @@ void sort_fields(Draft& draft, const fs::path& file, FrameSource& source) {
   }
 }
 
-void init(const Options& options) {
+void init(const InitOptions& options) {
   refuse_to_replace(options.file);
   const auto source = open_dumps(options.input);
   const FrameInfo& last = source->frames().back();
@@ -158,7 +158,7 @@ void init(const Options& options) {
 
 void add_init(CLI::App& app) {
   CLI::App* command = app.add_subcommand("init", "Write a pipeline file that fits dump files");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InitOptions>();
   InputSpec& input = options->input;
   command->add_option("dumps", input.particles, "Particle dumps: files, folders or patterns")
       ->required()
@@ -184,7 +184,7 @@ void add_init(CLI::App& app) {
   command->add_option("-o,--output", options->file, "The pipeline file to write")
       ->type_name("FILE")
       ->capture_default_str();
-  command->footer(footer);
+  command->footer(init_footer);
   command->callback([options] { init(*options); });
 }
 

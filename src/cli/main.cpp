@@ -17,7 +17,7 @@ namespace {
 
 enum ExitCode { bad_usage = 1, io_failed = 3, limit_refused = 4, unexpected = 5 };
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* main_footer = R"(Examples:
   grainvdb info dumps/
   grainvdb init dumps/ --output my.yaml
   grainvdb validate pipelines/shear_cell.yaml
@@ -93,7 +93,7 @@ int run(int argc, char** argv) {
   give_large_blocks_back();
   CLI::App app("Continuum fields from particle snapshots of granular flow.", "grainvdb");
   app.set_version_flag("--version", "grainvdb " GRAINVDB_VERSION);
-  app.footer(footer);
+  app.footer(main_footer);
   app.require_subcommand(1);
   add_run(app);
   add_trace(app);

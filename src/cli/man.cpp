@@ -6,7 +6,7 @@
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* man_footer = R"(Examples:
   grainvdb man > grainvdb.1
   man -l <(grainvdb man))";
 
@@ -82,7 +82,7 @@ void write_page(std::ostream& out, const CLI::App& app) {
 
 void add_man(CLI::App& app) {
   CLI::App* command = app.add_subcommand("man", "Print the manual page");
-  command->footer(footer);
+  command->footer(man_footer);
   command->callback([&app] { write_page(std::cout, app); });
 }
 

@@ -8,7 +8,7 @@
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* measurements_footer = R"(Examples:
   grainvdb measurements
   grainvdb measurements pair_correlation
   grainvdb measurements --markdown
@@ -67,7 +67,7 @@ void add_measurements(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("measurements", "List the tables that can be made, with equations and options");
   const auto request = add_list_options(*command, "measurement");
-  command->footer(footer);
+  command->footer(measurements_footer);
   command->callback([request] { list(*request); });
 }
 

@@ -7,7 +7,7 @@
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* page_footer = R"(Examples:
   grainvdb report output
   grainvdb report output --cut y --at 0.0032 --axis z
   grainvdb report output --output for-the-group --fitted 2.0 0.584 0.845e-4 0.0377
@@ -15,13 +15,13 @@ constexpr const char* footer = R"(Examples:
 The page report.html holds everything and can be sent as it is; the pictures lie beside it as PNG files. Needs h5py and
 matplotlib, on Debian the packages python3-h5py and python3-matplotlib.)";
 
-struct Options {
+struct PageOptions {
   std::string folder, output, axis, cut;
   std::string at;
   std::vector<std::string> fitted;
 };
 
-void report(const Options& options) {
+void report(const PageOptions& options) {
   std::vector<std::string> arguments{options.folder};
   const auto pass = [&](const char* name, const std::string& value) {
     if (!value.empty()) arguments.push_back(std::string(name) + '=' + value);
@@ -41,7 +41,7 @@ void report(const Options& options) {
 
 void add_report(CLI::App& app) {
   CLI::App* command = app.add_subcommand("report", "Make a page with pictures from a result");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<PageOptions>();
   const CLI::IsMember axes({"x", "y", "z"});
   command->add_option("result", options->folder, "The output folder of a run")->required()->type_name("DIR");
   command->add_option("-o,--output", options->output, "Folder for the page; DIR/report unless given")->type_name("DIR");
@@ -58,7 +58,7 @@ void add_report(CLI::App& app) {
       ->type_name("A B C D")
       ->expected(4)
       ->check(CLI::Number);
-  command->footer(footer);
+  command->footer(page_footer);
   command->callback([options] { report(*options); });
 }
 

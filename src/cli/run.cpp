@@ -29,7 +29,7 @@
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* run_footer = R"(Examples:
   grainvdb run pipelines/shear_cell.yaml
   grainvdb run pipelines/shear_cell.yaml --output result --threads 4
   grainvdb run pipelines/shear_cell.yaml --frames -10: --set lattice.voxel=0.8e-3
@@ -55,7 +55,7 @@ constexpr const char* measure_footer = R"(Examples:
 Writes tables.h5 and tables/*.csv, and no fields; 'run' writes them along with the fields. What no table needs is neither
 read nor computed. 'grainvdb measurements' lists what can be measured.)";
 
-struct Options {
+struct RunOptions {
   PipelineArguments pipeline;
   std::string output = "output";
   std::size_t threads = 0;
@@ -101,7 +101,7 @@ void write_tables(RunReport& report, const std::string& folder) {
   }
 }
 
-std::vector<std::unique_ptr<ProgressView>> progress_views(const Options& options) {
+std::vector<std::unique_ptr<ProgressView>> progress_views(const RunOptions& options) {
   std::vector<std::unique_ptr<ProgressView>> views;
   if (!options.progress_file.empty()) views.push_back(std::make_unique<ProgressFile>(options.progress_file));
   if (options.log_json) {
@@ -112,7 +112,7 @@ std::vector<std::unique_ptr<ProgressView>> progress_views(const Options& options
   return views;
 }
 
-void warn(const Options& options, const std::string& warnings) {
+void warn(const RunOptions& options, const std::string& warnings) {
   if (options.log_json)
     log_warnings(warnings);
   else
@@ -121,7 +121,7 @@ void warn(const Options& options, const std::string& warnings) {
 
 /// work(show) on as many threads as are wanted; show(progress) is for it to call again and again.
 template <class F>
-auto with_progress(const Options& options, F work) {
+auto with_progress(const RunOptions& options, F work) {
   std::optional<tbb::global_control> threads;
   if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
   watch_for_interrupts();
@@ -132,7 +132,7 @@ auto with_progress(const Options& options, F work) {
   });
 }
 
-void run_once(const Pipeline& pipeline, const Options& options) {
+void run_once(const Pipeline& pipeline, const RunOptions& options) {
   const ScaleRun run = make_run(pipeline, options.output);
   std::optional<CheckpointOptions> checkpoint;
   if (options.resume || options.follow) checkpoint = CheckpointOptions{options.output, options.checkpoint_interval};
@@ -154,7 +154,7 @@ std::string folder_of_scale(const std::string& output, const Pipeline& pipeline)
       .string();
 }
 
-void run_at_scales(const Pipeline& pipeline, const Options& options) {
+void run_at_scales(const Pipeline& pipeline, const RunOptions& options) {
   if (options.resume || options.follow)
     throw ConfigError({pipeline.location("scales"),
                        "several scales can neither be resumed nor followed",
@@ -190,23 +190,23 @@ void run_dry(const Pipeline& pipeline) {
   }
 }
 
-void run(const Pipeline& pipeline, const Options& options) {
+void run(const Pipeline& pipeline, const RunOptions& options) {
   if (options.dry_run) return run_dry(pipeline);
   pipeline.scales.empty() ? run_once(pipeline, options) : run_at_scales(pipeline, options);
 }
 
-Pipeline load(const Options& options) {
+Pipeline load(const RunOptions& options) {
   return load_pipeline(options.pipeline.file, options.pipeline.settings());
 }
 
 // Something must end the waiting.
-void run_or_follow(const Options& options) {
+void run_or_follow(const RunOptions& options) {
   if (options.follow && !options.waiting.last_step && !options.waiting.timeout)
     throw ConfigError({{}, "--follow needs an end", {}, "--last-step N, --timeout SECONDS, or both", {}});
   run(load(options), options);
 }
 
-void trace(const Options& options) {
+void trace(const RunOptions& options) {
   Pipeline pipeline = load(options);
   if (!pipeline.trace)
     throw ConfigError({Location{pipeline.file},
@@ -220,7 +220,7 @@ void trace(const Options& options) {
   run(pipeline, options);
 }
 
-void measure(const Options& options) {
+void measure(const RunOptions& options) {
   Pipeline pipeline = load(options);
   if (pipeline.measure.empty())
     throw ConfigError({Location{pipeline.file},
@@ -236,7 +236,7 @@ void measure(const Options& options) {
 
 /// Errors are events, too, where events are logged.
 template <class F>
-void with_errors_logged(const Options& options, F work) {
+void with_errors_logged(const RunOptions& options, F work) {
   if (!options.log_json) return work(options);
   try {
     work(options);
@@ -246,7 +246,7 @@ void with_errors_logged(const Options& options, F work) {
   }
 }
 
-void add_options(CLI::App& command, Options& options) {
+void add_options(CLI::App& command, RunOptions& options) {
   add_pipeline_arguments(command, options.pipeline);
   command.add_option("-o,--output", options.output, "Folder for the results; made where there is none")
       ->type_name("DIR")
@@ -270,7 +270,7 @@ void add_options(CLI::App& command, Options& options) {
 
 void add_run(CLI::App& app) {
   CLI::App* command = app.add_subcommand("run", "Run a pipeline: read dumps, compute fields, write them");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
   add_options(*command, *options);
   CLI::Option* resume = command->add_flag(
       "--resume", options->resume,
@@ -302,13 +302,13 @@ void add_run(CLI::App& app) {
       ->check(CLI::PositiveNumber)
       ->needs(follow)
       ->capture_default_str();
-  command->footer(footer);
+  command->footer(run_footer);
   command->callback([options] { with_errors_logged(*options, run_or_follow); });
 }
 
 void add_trace(CLI::App& app) {
   CLI::App* command = app.add_subcommand("trace", "Move tracers with the material and write what they meet");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
   add_options(*command, *options);
   command->footer(trace_footer);
   command->callback([options] { with_errors_logged(*options, trace); });
@@ -316,7 +316,7 @@ void add_trace(CLI::App& app) {
 
 void add_measure(CLI::App& app) {
   CLI::App* command = app.add_subcommand("measure", "Make the tables that a pipeline asks for, and nothing else");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RunOptions>();
   add_options(*command, *options);
   command->footer(measure_footer);
   command->callback([options] { with_errors_logged(*options, measure); });

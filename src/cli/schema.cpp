@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* schema_footer = R"(Examples:
   grainvdb schema > grainvdb.schema.json
   grainvdb schema --text
 
@@ -70,7 +70,7 @@ void add_schema(CLI::App& app) {
   CLI::App* command = app.add_subcommand("schema", "Print the schema of pipeline files, as JSON Schema (draft 7)");
   const auto text = std::make_shared<bool>(false);
   command->add_flag("--text", *text, "Print every key with its type, default and help instead");
-  command->footer(footer);
+  command->footer(schema_footer);
   command->callback([text] {
     if (*text)
       print_section(Json::parse(pipeline_schema()), "");

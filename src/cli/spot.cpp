@@ -10,7 +10,7 @@
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* run_footer = R"(Examples:
+constexpr const char* spot_run_footer = R"(Examples:
   grainvdb spot run pipelines/spot_silo.yaml --output spot
   grainvdb spot run pipelines/spot_silo.yaml --set relaxation.every=0 --set seed=2 -o unrelaxed
   grainvdb info spot
@@ -18,7 +18,7 @@ constexpr const char* run_footer = R"(Examples:
 The dumps are read by every other command. Each appears under its name when it is complete; Ctrl-C leaves those that are
 done. The same file and seed give the same dumps.)";
 
-struct RunOptions {
+struct SpotRunOptions {
   PipelineArguments file;
   std::string output = "spot";
   bool quiet = false;
@@ -34,7 +34,7 @@ void print(const spot::SpotRun& run, const spot::SpotReport& report, const std::
             << " steps, " << c.relaxed << " of them relaxed\n";
 }
 
-void run(const RunOptions& options) {
+void run(const SpotRunOptions& options) {
   const spot::SpotRun run = spot::load_spot_run(options.file.file, options.file.overrides);
   check_output_folder(options.output);
   watch_for_interrupts();
@@ -51,13 +51,13 @@ void run(const RunOptions& options) {
 
 void add_run_subcommand(CLI::App& spot) {
   CLI::App* command = spot.add_subcommand("run", "Run the spot model and write dumps");
-  const auto options = std::make_shared<RunOptions>();
+  const auto options = std::make_shared<SpotRunOptions>();
   add_pipeline_arguments(*command, options->file);
   command->add_option("-o,--output", options->output, "Folder for the dumps; made where there is none")
       ->type_name("DIR")
       ->capture_default_str();
   command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
-  command->footer(run_footer);
+  command->footer(spot_run_footer);
   command->callback([options] { run(*options); });
 }
 

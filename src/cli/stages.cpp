@@ -9,7 +9,7 @@
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* stages_footer = R"(Examples:
   grainvdb stages
   grainvdb stages temperature
   grainvdb stages --markdown > fields.md
@@ -89,7 +89,7 @@ void list_stages(const ListRequest& request) {
 void add_stages(CLI::App& app) {
   CLI::App* command = app.add_subcommand("stages", "List the fields that can be computed, with equations and options");
   const auto request = add_list_options(*command, "stage");
-  command->footer(footer);
+  command->footer(stages_footer);
   command->callback([request] { list_stages(*request); });
 }
 

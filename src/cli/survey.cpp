@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <locale>
 #include <map>
-#include <sstream>
 
 #include "grainvdb/lattice.hpp"
 
@@ -162,14 +160,6 @@ std::optional<double> suggested_voxel(double diameter, const Box& box) {
     if (!best || std::abs(voxel - 0.5 * diameter) < std::abs(*best - 0.5 * diameter)) best = voxel;
   }
   return best;
-}
-
-std::string short_number(double x) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(4);
-  text << x;
-  return text.str();
 }
 
 }  // namespace grainvdb::cli

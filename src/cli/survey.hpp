@@ -47,7 +47,4 @@ double suggested_cutoff(double diameter, const Box& box);
 /// quarter and 0.6 of a diameter; nothing where there is none. Without periodic sides half a diameter, to three digits.
 std::optional<double> suggested_voxel(double diameter, const Box& box);
 
-/// A number to four digits.
-std::string short_number(double x);
-
 }  // namespace grainvdb::cli

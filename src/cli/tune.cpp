@@ -23,7 +23,7 @@
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* tune_footer = R"(Examples:
   grainvdb tune pipelines/shear_cell.yaml
   grainvdb tune pipelines/shear_cell.yaml --tolerance phi=1e-2,stress=3e-2
   grainvdb tune my.yaml --frames :3 --knobs lattice.voxel,frames --repeats 5
@@ -34,7 +34,7 @@ half the voxel, line integrals in closed form and gradients of the kernel; what 
 with --reference, e.g. --reference stages.temperature.mode=two_pass_profile. Take few frames and a part of the fields
 where the data are large: the reference takes long. Writes DIR/tune.csv and, with python3-matplotlib, DIR/tune.png.)";
 
-struct Options {
+struct TuneOptions {
   PipelineArguments pipeline;
   std::vector<std::string> tolerance, knobs, tries, reference;
   std::size_t repeats = 3;
@@ -95,7 +95,7 @@ std::vector<std::string> keys(const std::vector<Knob>& knobs) {
 }
 
 /// Those that --knobs names among what is tried by default, and those of --try, which take the place of equal keys.
-std::vector<Knob> chosen_knobs(const Options& options, std::vector<Knob> knobs) {
+std::vector<Knob> chosen_knobs(const TuneOptions& options, std::vector<Knob> knobs) {
   const std::vector<std::string> known = keys(knobs);
   for (const std::string& name : options.knobs)
     if (std::find(known.begin(), known.end(), name) == known.end())
@@ -124,7 +124,7 @@ void write_text(const std::string& path, const std::string& text) {
   file.publish();
 }
 
-void tune_pipeline(const Options& options) {
+void tune_pipeline(const TuneOptions& options) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, options.threads);
   TuneRequest request;
   request.file = options.pipeline.file;
@@ -134,6 +134,10 @@ void tune_pipeline(const Options& options) {
   request.repeats = options.repeats;
   request.most_runs = options.most_runs;
   const Pipeline pipeline = load_pipeline(request.file, request.overrides);
+  if (!pipeline.scales.empty())
+    throw ConfigError({pipeline.location("scales"), "settings are compared at one scale",
+                       std::to_string(pipeline.scales.size()) + " scales", "a pipeline file without scales",
+                       "Cutoffs and voxels are tried by --try kernel.cutoff=A,B and --try lattice.voxel=A,B."});
   const Plan plan = make_plan(pipeline);
   check_output_folder(options.output);
   const auto source = open_input(pipeline, plan);
@@ -171,7 +175,7 @@ void tune_pipeline(const Options& options) {
 
 void add_tune(CLI::App& app) {
   CLI::App* command = app.add_subcommand("tune", "Measure speed against accuracy of a pipeline's settings");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<TuneOptions>();
   add_pipeline_arguments(*command, options->pipeline);
   add_frames_option(*command, options->pipeline);
   command
@@ -208,7 +212,7 @@ void add_tune(CLI::App& app) {
       ->capture_default_str();
   command->add_flag("--no-picture", options->no_picture, "Draw nothing");
   command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
-  command->footer(footer);
+  command->footer(tune_footer);
   command->callback([options] { tune_pipeline(*options); });
 }
 

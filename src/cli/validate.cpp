@@ -11,7 +11,7 @@
 namespace grainvdb::cli {
 namespace {
 
-constexpr const char* footer = R"(Examples:
+constexpr const char* validate_footer = R"(Examples:
   grainvdb validate pipelines/shear_cell.yaml
   grainvdb validate pipelines/shear_cell.yaml --no-input --set kernel.cutoff=3e-3
   grainvdb validate pipelines/shear_cell.yaml --json
@@ -20,7 +20,7 @@ Prints 'valid' and exits with 0 only when the pipeline can be run. The first sel
 the run will; later frames are not. With --json, what is wrong is printed to the standard output by its parts: kind,
 exit_code, file, line, what, found, expected, hint, message; those that do not apply are left out.)";
 
-struct Options {
+struct ValidateOptions {
   PipelineArguments pipeline;
   bool no_input = false;
   bool json = false;
@@ -38,7 +38,7 @@ void check_first_frame(const Pipeline& pipeline, const Plan& plan, const Lattice
   }
 }
 
-void check(const Options& options) {
+void check(const ValidateOptions& options) {
   const std::vector<Pipeline> pipelines = at_scales(load_pipeline(options.pipeline.file, options.pipeline.settings()));
   std::vector<Plan> plans;
   for (const Pipeline& pipeline : pipelines) plans.push_back(make_plan(pipeline));
@@ -58,7 +58,7 @@ void print(const nlohmann::ordered_json& json) {
   std::cout << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
 }
 
-void validate(const Options& options) {
+void validate(const ValidateOptions& options) {
   if (!options.json) {
     check(options);
     std::cout << "valid\n";
@@ -78,11 +78,11 @@ void validate(const Options& options) {
 void add_validate(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("validate", "Check a pipeline file, and its dumps against it, without running");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ValidateOptions>();
   add_pipeline_arguments(*command, options->pipeline);
   command->add_flag("--no-input", options->no_input, "Do not look at the dumps");
   command->add_flag("--json", options->json, "Print the verdict as JSON");
-  command->footer(footer);
+  command->footer(validate_footer);
   command->callback([options] { validate(*options); });
 }
 

@@ -1,15 +1,12 @@
 #include "measure/binned_curve.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
+#include "base/nan.hpp"
+
 namespace grainvdb {
-namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
+namespace {}  // namespace
 
 void RunningMoments::add(double value) {
   ++count_;

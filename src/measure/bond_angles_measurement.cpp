@@ -10,8 +10,8 @@
 namespace grainvdb {
 namespace {
 
-constexpr double default_gap = 0.1;  // mean diameters
-constexpr double degrees = 180 / std::numbers::pi;
+constexpr double neighbour_gap = 0.1;  // mean diameters
+constexpr double in_degrees = 180 / std::numbers::pi;
 
 class BondAnglesMeasurement : public Measurement {
  public:
@@ -21,7 +21,7 @@ class BondAnglesMeasurement : public Measurement {
   void add(const Frame& frame) override {
     const Particles& grains = frame.particles;
     if (grains.size() == 0) return;
-    if (!gap_) gap_ = length_option(options_, "gap", default_gap, mean_diameter(grains.radius));
+    if (!gap_) gap_ = length_option(options_, "gap", neighbour_gap, mean_diameter(grains.radius));
     const ContactGraph graph = contacts_by_gap(frame.box, grains.position, grains.radius, *gap_);
     for (std::size_t i = 0; i < graph.size(); ++i)
       if (region_.holds(wrapped(frame.box, grains.position, i))) angles_.add(graph, i);
@@ -35,8 +35,8 @@ class BondAnglesMeasurement : public Measurement {
     TableColumn relative{"relative", dimension::none, "the same over that of directions without preference"};
     TableColumn count{"count", dimension::none, "pairs of contacts"};
     for (std::size_t k = 0; k < angles_.bins(); ++k) {
-      angle.values.push_back(0.5 * (angles_.edge(k) + angles_.edge(k + 1)) * degrees);
-      density.values.push_back(angles_.density(k) / degrees);
+      angle.values.push_back(0.5 * (angles_.edge(k) + angles_.edge(k + 1)) * in_degrees);
+      density.values.push_back(angles_.density(k) / in_degrees);
       relative.values.push_back(angles_.relative(k));
       count.values.push_back(angles_.count(k));
     }

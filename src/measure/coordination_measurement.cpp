@@ -12,7 +12,7 @@
 namespace grainvdb {
 namespace {
 
-constexpr double default_gap = 0.01;  // mean diameters
+constexpr double contact_gap = 0.01;  // mean diameters
 
 bool by_dump(const OptionValues& options) {
   return std::get<std::string>(options.at("contacts")) == "dump";
@@ -84,7 +84,7 @@ class Coordination : public Measurement {
   ContactGraph graph_of(const Frame& frame) {
     const Particles& grains = frame.particles;
     if (by_dump(options_)) return contacts_of_dump(grains, frame.contacts);
-    if (!gap_) gap_ = length_option(options_, "gap", default_gap, mean_diameter(grains.radius));
+    if (!gap_) gap_ = length_option(options_, "gap", contact_gap, mean_diameter(grains.radius));
     return contacts_by_gap(frame.box, grains.position, grains.radius, *gap_);
   }
 

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "base/nan.hpp"
 #include "measure/grains.hpp"
 
 namespace grainvdb {
 namespace {
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 double largest_magnitude(const std::vector<double>& values) {
   double most = 0;

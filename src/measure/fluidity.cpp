@@ -11,7 +11,7 @@ namespace grainvdb {
 namespace {
 
 // What is asked of a state, in this order.
-enum Quantity : std::size_t { gd_over_dv, packing, dv_over_d_domega, g_over_domega };
+enum FluidityQuantity : std::size_t { gd_over_dv, packing_fraction, dv_over_d_domega, g_over_domega };
 
 bool with_spin(const OptionValues& options) {
   return std::get<bool>(options.at("spin"));
@@ -20,7 +20,7 @@ bool with_spin(const OptionValues& options) {
 StateQuantities quantities(bool spin) {
   return [spin](const FlowState& state, std::span<double> out) {
     out[gd_over_dv] = state.gd_over_dv();
-    out[packing] = state.phi;
+    out[packing_fraction] = state.phi;
     if (!spin) return;
     out[dv_over_d_domega] = state.dv_over_d_domega();
     out[g_over_domega] = state.g_over_domega();
@@ -72,7 +72,7 @@ class FluidityMeasurement : public Measurement {
   FluidityLawFit fit_samples(const std::vector<StateSample>& samples, Table& table) const {
     FluidityData data;
     for (const StateSample& sample : samples) {
-      data.phi.push_back(sample.values[packing].value);
+      data.phi.push_back(sample.values[packing_fraction].value);
       data.value.push_back(sample.values[gd_over_dv].value);
     }
     data.error = fit_errors(samples, gd_over_dv, error_floor_);
@@ -102,7 +102,7 @@ class FluidityMeasurement : public Measurement {
       add_estimate_columns(table, "g_over_domega", dimension::none, "g/domega (A24)");
     }
     for (const StateSample& sample : samples) {
-      const double phi = sample.values[packing].value;
+      const double phi = sample.values[packing_fraction].value;
       table.columns[0].values.push_back(phi);
       append(table, value, sample.values[gd_over_dv]);
       table.columns[3].values.push_back(fitted(phi));
@@ -139,7 +139,7 @@ class FluidityMeasurement : public Measurement {
     const FluidityLaw law = law_named(compare_);
     double squares = 0, count = 0;
     for (const StateSample& sample : samples) {
-      const double expected = law(sample.values[packing].value);
+      const double expected = law(sample.values[packing_fraction].value);
       if (expected < 0) continue;
       squares += std::pow(sample.values[gd_over_dv].value - expected, 2);
       ++count;

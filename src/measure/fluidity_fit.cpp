@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/nan.hpp"
 #include "measure/weighted_line.hpp"
 
 namespace grainvdb {
@@ -43,8 +44,6 @@ std::optional<Knee> start_of(const FluidityData& data, std::optional<double> hel
     }
   return best;
 }
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 /// Parameters 0 A, 1 B, 2 k = 1/D and, unless it is held, 3 w = √C.
 FitProblem problem_of(const FluidityData& data, const Knee& start, std::optional<double> held_w) {

@@ -2,10 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Dense>
 
+#include "base/nan.hpp"
 #include "measure/cell_grid.hpp"
 
 namespace grainvdb {
@@ -33,7 +33,6 @@ void FreeSurface::add(const Box& box, const Columns3& position, const std::vecto
 }
 
 SurfacePlane FreeSurface::plane() const {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   SurfacePlane result{nan, nan, {nan, nan}, {nan, nan}, nan, nan, nan, tops_.size()};
   const auto rows = static_cast<Eigen::Index>(tops_.size());
   const Eigen::Index unknowns = 1 + (sloped_[0] ? 1 : 0) + (sloped_[1] ? 1 : 0);

@@ -28,9 +28,13 @@ inline double mean_diameter(const std::vector<double>& radius) {
   return 2 * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size());
 }
 
+inline double number_option(const OptionValues& options, const std::string& name) {
+  return std::get<double>(options.at(name));
+}
+
 /// The value of a length option, or `diameters` mean diameters where it is 0.
 inline double length_option(const OptionValues& options, const std::string& name, double diameters, double diameter) {
-  const double given = std::get<double>(options.at(name));
+  const double given = number_option(options, name);
   return given > 0 ? given : diameters * diameter;
 }
 

@@ -9,6 +9,7 @@
 #include "grainvdb/kinematic.hpp"
 #include "grainvdb/run.hpp"
 #include "measure/drainage_fit.hpp"
+#include "measure/grains.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/voxel_values.hpp"
 
@@ -17,10 +18,6 @@ namespace {
 
 constexpr Dimension discharge_dimension{0, 2, -1};
 constexpr Dimension area{0, 2, 0};
-
-double number(const OptionValues& options, const char* name) {
-  return std::get<double>(options.at(name));
-}
 
 int axis(const OptionValues& options, const char* name) {
   return std::get<std::string>(options.at(name))[0] - 'x';
@@ -37,14 +34,15 @@ class KinematicMeasurement : public Measurement {
       : lattice_(setting.lattice),
         up_(axis(setting.options, "up")),
         across_(axis(setting.options, "across")),
-        slot_(number(setting.options, "slot")),
-        bottom_(number(setting.options, "bottom")),
-        lowest_(number(setting.options, "lowest") > 0 ? number(setting.options, "lowest") : setting.kernel.cutoff()),
-        highest_(number(setting.options, "highest") > 0 ? number(setting.options, "highest")
-                                                        : std::numeric_limits<double>::infinity()),
-        half_width_(number(setting.options, "half_width") > 0 ? number(setting.options, "half_width")
-                                                              : std::numeric_limits<double>::infinity()),
-        least_phi_(number(setting.options, "phi_min")),
+        slot_(number_option(setting.options, "slot")),
+        bottom_(number_option(setting.options, "bottom")),
+        lowest_(number_option(setting.options, "lowest") > 0 ? number_option(setting.options, "lowest")
+                                                             : setting.kernel.cutoff()),
+        highest_(number_option(setting.options, "highest") > 0 ? number_option(setting.options, "highest")
+                                                               : std::numeric_limits<double>::infinity()),
+        half_width_(number_option(setting.options, "half_width") > 0 ? number_option(setting.options, "half_width")
+                                                                     : std::numeric_limits<double>::infinity()),
+        least_phi_(number_option(setting.options, "phi_min")),
         independence_(independence(setting.lattice.voxel(), setting.kernel)),
         origin_(origin_of(setting.options)) {}
 
@@ -148,7 +146,7 @@ class KinematicMeasurement : public Measurement {
   std::size_t outputs_ = 0;
 };
 
-OptionInfo length_option(const char* name, const char* help) {
+OptionInfo length_option_info(const char* name, const char* help) {
   return {.name = name, .default_value = 0.0, .help = help, .minimum = 0};
 }
 
@@ -167,11 +165,11 @@ MeasurementInfo kinematic_fit_measurement() {
        .choices = {"x", "y", "z"}},
       {.name = "slot", .default_value = 0.0, .help = "where the middle of the slot is, across [length]"},
       {.name = "bottom", .default_value = 0.0, .help = "where the slot is, up [length]"},
-      length_option("lowest",
-                    "height above the slot from which on the flow counts [length]; 0: the kernel's cutoff, "
-                    "usually three mean diameters"),
-      length_option("highest", "height above the slot up to which it counts [length]; 0: all"),
-      length_option("half_width", "distance from the middle up to which it counts [length]; 0: all"),
+      length_option_info("lowest",
+                         "height above the slot from which on the flow counts [length]; 0: the kernel's cutoff, "
+                         "usually three mean diameters"),
+      length_option_info("highest", "height above the slot up to which it counts [length]; 0: all"),
+      length_option_info("half_width", "distance from the middle up to which it counts [length]; 0: all"),
       {.name = "origin",
        .default_value = std::string("slot"),
        .help = "where profiles have no width: slot (at its height) or fitted (below, for a wide slot and kernel)",

@@ -8,14 +8,14 @@
 #include <Eigen/SVD>
 #include <unsupported/Eigen/NonLinearOptimization>
 
+#include "base/nan.hpp"
+
 namespace grainvdb {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string text_of(double x) {
   char text[32];

@@ -9,7 +9,7 @@
 namespace grainvdb {
 namespace {
 
-constexpr double default_reach = 5;  // mean diameters
+constexpr double correlation_reach = 5;  // mean diameters
 
 class PairCorrelation : public Measurement {
  public:
@@ -19,7 +19,7 @@ class PairCorrelation : public Measurement {
     const Particles& grains = frame.particles;
     if (grains.size() == 0) return;
     if (!counts_)
-      counts_.emplace(length_option(options_, "reach", default_reach, mean_diameter(grains.radius)),
+      counts_.emplace(length_option(options_, "reach", correlation_reach, mean_diameter(grains.radius)),
                       count_option(options_, "bins"));
     counts_->add(frame.box, grains.position, region_);
   }

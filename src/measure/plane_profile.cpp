@@ -11,7 +11,7 @@
 namespace grainvdb {
 namespace {
 
-constexpr std::size_t quantities = 7;  // phi, density, velocity (three), temperature, mean diameter
+constexpr std::size_t profile_quantities = 7;  // phi, density, velocity (three), temperature, mean diameter
 
 class PlaneProfile : public Measurement {
  public:
@@ -52,7 +52,7 @@ class PlaneProfile : public Measurement {
     for (const std::int64_t plane : sums_.bins()) {
       table.columns[0].values.push_back(lattice_.centre(axis_, static_cast<std::int32_t>(plane)));
       const auto estimates =
-          jackknife(sums_.times(), quantities, [&](std::optional<std::size_t> without, std::span<double> out) {
+          jackknife(sums_.times(), profile_quantities, [&](std::optional<std::size_t> without, std::span<double> out) {
             const double frames = static_cast<double>(sums_.times() - (without ? 1 : 0));
             const std::vector<double> sum = sums_.total(plane, without);
             out[0] = sum[PlaneMeans::volume] / frames;
@@ -61,7 +61,7 @@ class PlaneProfile : public Measurement {
             out[5] = sum[PlaneMeans::heat] / sum[PlaneMeans::volume];
             out[6] = sum[PlaneMeans::diameter] / sum[PlaneMeans::volume];
           });
-      for (std::size_t n = 0; n < quantities; ++n) append(table, 1 + 2 * n, estimates[n]);
+      for (std::size_t n = 0; n < profile_quantities; ++n) append(table, 1 + 2 * n, estimates[n]);
     }
     table.remarks.push_back(error_remark(sums_.times(), "frame"));
     return {std::move(table)};

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "measure/estimate_columns.hpp"
+#include "measure/grains.hpp"
 #include "measure/regime.hpp"
 #include "measure/register.hpp"
 #include "measure/rheology_fits.hpp"
@@ -14,7 +15,7 @@ namespace grainvdb {
 namespace {
 
 // What is asked of a state, in this order.
-enum Quantity : std::size_t {
+enum RheologyQuantity : std::size_t {
   friction,
   inertial_number,
   packing,
@@ -30,7 +31,7 @@ enum Quantity : std::size_t {
 };
 
 struct QuantityInfo {
-  Quantity quantity;
+  RheologyQuantity quantity;
   const char* name;
   Dimension dimension;
   const char* description;
@@ -49,10 +50,6 @@ constexpr std::array<QuantityInfo, quantity_count> described{{
     {skt_pressure, "skt_pressure", dimension::none, "P/(rho_p d^2 gd^2) by kinetic theory at the measured T/3"},
     {skt_mu, "skt_mu", dimension::none, "tau/p by kinetic theory at the measured T/3"},
 }};
-
-double number(const OptionValues& options, const char* name) {
-  return std::get<double>(options.at(name));
-}
 
 StateQuantities quantities(double stiffness, double restitution, double skt_most) {
   return [=](const FlowState& state, std::span<double> out) {
@@ -74,15 +71,15 @@ StateQuantities quantities(double stiffness, double restitution, double skt_most
 class RheologyMeasurement : public Measurement {
  public:
   explicit RheologyMeasurement(const MeasurementSetting& setting)
-      : stiffness_(number(setting.options, "stiffness")),
-        rate_min_(number(setting.options, "rate_min")),
-        rate_fraction_(number(setting.options, "rate_fraction")),
-        condition_limit_(number(setting.options, "condition_limit")),
-        error_floor_(number(setting.options, "error_floor")),
-        skt_most_(number(setting.options, "skt_phi_max")),
-        bounds_{number(setting.options, "quasi_static_below"), number(setting.options, "inertial_above")},
+      : stiffness_(number_option(setting.options, "stiffness")),
+        rate_min_(number_option(setting.options, "rate_min")),
+        rate_fraction_(number_option(setting.options, "rate_fraction")),
+        condition_limit_(number_option(setting.options, "condition_limit")),
+        error_floor_(number_option(setting.options, "error_floor")),
+        skt_most_(number_option(setting.options, "skt_phi_max")),
+        bounds_{number_option(setting.options, "quasi_static_below"), number_option(setting.options, "inertial_above")},
         samples_(make_samples(setting, sample_fields(false), quantity_count,
-                              quantities(stiffness_, number(setting.options, "restitution"), skt_most_))) {}
+                              quantities(stiffness_, number_option(setting.options, "restitution"), skt_most_))) {}
 
   void take(const OutputFields& output) override { samples_->take(output); }
 
@@ -145,7 +142,7 @@ class RheologyMeasurement : public Measurement {
   }
 
   /// What laws of `quantity` are fitted to: places that shear.
-  RheologyData data_of(const std::vector<StateSample>& band, Quantity quantity) const {
+  RheologyData data_of(const std::vector<StateSample>& band, RheologyQuantity quantity) const {
     RheologyData data;
     std::vector<StateSample> used;
     for (const StateSample& sample : band)
@@ -262,10 +259,10 @@ std::vector<OptionInfo> options() {
 }
 
 std::optional<OptionConflict> conflict(const OptionValues& values) {
-  if (number(values, "quasi_static_below") > number(values, "inertial_above"))
+  if (number_option(values, "quasi_static_below") > number_option(values, "inertial_above"))
     return OptionConflict{
-        "inertial_above", std::to_string(number(values, "inertial_above")),
-        "no less than quasi_static_below, which is " + std::to_string(number(values, "quasi_static_below"))};
+        "inertial_above", std::to_string(number_option(values, "inertial_above")),
+        "no less than quasi_static_below, which is " + std::to_string(number_option(values, "quasi_static_below"))};
   return bin_conflict(values);
 }
 

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <string>
 
+#include "base/nan.hpp"
 #include "measure/weighted_line.hpp"
 
 namespace grainvdb {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double pressure_of(const RheologyData& data, std::size_t k) {

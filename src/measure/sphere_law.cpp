@@ -2,6 +2,7 @@
 #include <limits>
 #include <span>
 
+#include "base/nan.hpp"
 #include "measure/least_squares.hpp"
 #include "measure/velocity_correlation.hpp"
 
@@ -37,7 +38,6 @@ double sphere_law(double r, double radius) {
 }
 
 SphereFit fit_sphere_law(const std::vector<double>& r, const std::vector<double>& c) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   if (r.empty()) return {nan, nan};
   const SphereFit start = best_of_many(r, c);
   FitProblem problem;

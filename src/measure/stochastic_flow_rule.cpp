@@ -5,16 +5,13 @@
 
 #include "grainvdb/run.hpp"
 #include "measure/distribution.hpp"
+#include "measure/grains.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/streamlines.hpp"
 #include "measure/voxel_values.hpp"
 
 namespace grainvdb {
 namespace {
-
-double number(const OptionValues& options, const char* name) {
-  return std::get<double>(options.at(name));
-}
 
 const std::vector<double>& place(const OptionValues& options, const char* name) {
   return std::get<std::vector<double>>(options.at(name));
@@ -41,12 +38,12 @@ class StochasticFlowRule : public Measurement {
   explicit StochasticFlowRule(const MeasurementSetting& setting)
       : lattice_(setting.lattice),
         box_(setting.box),
-        least_phi_(number(setting.options, "phi_min")),
+        least_phi_(number_option(setting.options, "phi_min")),
         angles_(0, std::numbers::pi, static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("bins"))),
                 independence(setting.lattice.voxel(), setting.kernel)),
         starts_(starts_of(setting.options)),
-        length_(number(setting.options, "length") > 0 ? number(setting.options, "length")
-                                                      : 10 * setting.kernel.cutoff()) {
+        length_(number_option(setting.options, "length") > 0 ? number_option(setting.options, "length")
+                                                             : 10 * setting.kernel.cutoff()) {
     describe_lines();
   }
 

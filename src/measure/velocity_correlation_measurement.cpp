@@ -12,7 +12,7 @@
 namespace grainvdb {
 namespace {
 
-constexpr double default_reach = 8;  // mean diameters
+constexpr double velocity_reach = 8;  // mean diameters
 constexpr double default_from = 1;
 
 /// C(r) of the bins that are fitted.
@@ -38,7 +38,7 @@ class VelocityCorrelationMeasurement : public Measurement {
       motion_ = mean_motion(options_, d);
       from_ = length_option(options_, "fit_from", default_from, d);
       slabs_.emplace(region_.within(frame.box, frame.particles.position));
-      correlation_.emplace(length_option(options_, "reach", default_reach, d), count_option(options_, "bins"));
+      correlation_.emplace(length_option(options_, "reach", velocity_reach, d), count_option(options_, "bins"));
     }
     correlation_->add(frame.box, position, fluctuations(motion_, position, velocity), *slabs_);
   }

@@ -10,8 +10,8 @@
 namespace grainvdb {
 namespace {
 
-constexpr std::uint8_t material = 1;
-constexpr std::uint8_t wall = 2;
+constexpr std::uint8_t material_grain = 1;
+constexpr std::uint8_t wall_grain = 2;
 
 /// What the particle of each half branch is.
 std::vector<std::uint8_t> roles_of_branches(const Frame& frame, const Pipeline& pipeline) {
@@ -19,9 +19,9 @@ std::vector<std::uint8_t> roles_of_branches(const Frame& frame, const Pipeline& 
   std::vector<std::uint8_t> role(p.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (is_wall_grain(pipeline.walls, pipeline.select, frame.box, p, i)) {
-      role[i] = wall;
+      role[i] = wall_grain;
     } else if (is_selected(pipeline.select, frame.box, p, i)) {
-      role[i] = material;
+      role[i] = material_grain;
     }
   }
   std::vector<std::uint8_t> of_branch;
@@ -42,14 +42,14 @@ HalfBranches outside_walls(const HalfBranches& all, const std::vector<std::uint8
   HalfBranches kept;
   for (const bool both : {true, false})
     for (std::size_t n = 0; n < all.size(); ++n)
-      if (role[n] != wall && (role[n ^ 1U] != wall) == both) append(all, n, kept);
+      if (role[n] != wall_grain && (role[n ^ 1U] != wall_grain) == both) append(all, n, kept);
   return kept;
 }
 
 HalfBranches at_walls(const HalfBranches& all, const std::vector<std::uint8_t>& role) {
   HalfBranches contacts;
   for (std::size_t n = 0; n < all.size(); ++n) {
-    if (role[n] != material || role[n ^ 1U] != wall) continue;
+    if (role[n] != material_grain || role[n ^ 1U] != wall_grain) continue;
     append(all, n, contacts);
     for (std::size_t a = 0; a < 3; ++a) {
       contacts.start[a].back() -= all.arm[a][n];

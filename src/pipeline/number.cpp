@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <locale>
+#include <sstream>
 
 namespace grainvdb {
 namespace {
@@ -51,6 +53,14 @@ std::string print_number(double value) {
   const auto exponent = text.find('e');
   if (text.find('.') == std::string::npos) text.insert(exponent == std::string::npos ? text.size() : exponent, ".0");
   return text;
+}
+
+std::string short_number(double value) {
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text.precision(4);
+  text << value;
+  return text.str();
 }
 
 }  // namespace grainvdb

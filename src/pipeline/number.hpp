@@ -17,4 +17,7 @@ std::optional<std::int64_t> parse_integer(std::string_view text);
 /// The shortest text that reads back as the same number, in the form that every YAML reader takes for one.
 std::string print_number(double value);
 
+/// To four digits, for people.
+std::string short_number(double value);
+
 }  // namespace grainvdb

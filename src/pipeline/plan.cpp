@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <locale>
 #include <map>
 #include <numbers>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -162,22 +160,14 @@ void check_reach(const Pipeline& pipeline) {
          "Use smaller voxels or a wider kernel."});
 }
 
-std::string rounded(double x) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(3);
-  text << x;
-  return text.str();
-}
-
 // Sums over coarse voxels are no integrals: a grain's volume comes out larger or smaller with its place.
 void check_voxel(const Pipeline& pipeline) {
   const double error = grain_volume_error(pipeline.cutoff / pipeline.voxel);
   if (error > pipeline.limits.volume_error)
     throw LimitError(
         {pipeline.location("lattice.voxel"), "the voxels are too coarse for the kernel",
-         "a cutoff of " + rounded(pipeline.cutoff / pipeline.voxel) +
-             " voxels, at which the volume of a grain is off by up to " + rounded(error),
+         "a cutoff of " + short_number(pipeline.cutoff / pipeline.voxel) +
+             " voxels, at which the volume of a grain is off by up to " + short_number(error),
          "at most limits.volume_error = " + print_number(pipeline.limits.volume_error) + "; 3 voxels give 0.0022",
          "Use smaller voxels or a wider kernel, or raise the limit."});
 }

@@ -1,20 +1,10 @@
 #include "grainvdb/trace_report.hpp"
 
-#include <locale>
-#include <sstream>
-
 #include "grainvdb/tracers.hpp"
+#include "pipeline/number.hpp"
 
 namespace grainvdb {
 namespace {
-
-std::string short_number(double value) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(3);
-  text << value;
-  return text.str();
-}
 
 std::string counted(std::size_t n, const std::string& noun) {
   return std::to_string(n) + ' ' + noun + (n == 1 ? "" : "s");

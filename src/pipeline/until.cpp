@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <locale>
-#include <sstream>
 #include <vector>
 
 #include "average/growing_blocks.hpp"
 #include "average/leave_one_out.hpp"
+#include "pipeline/number.hpp"
 
 namespace grainvdb {
 namespace {
@@ -33,19 +32,10 @@ double error_at(const Until& until, const SparseField& field, const SparseField&
   return !until.relative || e == 0 ? e : e / value;
 }
 
-/// Errors differ from one frame to the next: more digits mean nothing.
-std::string rounded(double x) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text.precision(3);
-  text << x;
-  return text.str();
-}
-
 /// What is compared with the target: "phi_error/|phi| in 90 % of voxels".
 std::string compared(const Until& until) {
   return until.field + "_error" + (until.relative ? "/|" + until.field + '|' : "") + " in " +
-         rounded(100 * until.quantile) + " % of voxels";
+         short_number(100 * until.quantile) + " % of voxels";
 }
 
 }  // namespace
@@ -88,13 +78,13 @@ bool is_time_to_look(const Pipeline& pipeline, std::size_t frames) {
 }
 
 std::string describe_progress(const Until& until, double error) {
-  return compared(until) + " at " + rounded(error) + ", ends at " + rounded(until.error);
+  return compared(until) + " at " + short_number(error) + ", ends at " + short_number(until.error);
 }
 
 std::string describe(const Until& until, const Stop& stop) {
   return std::string(stop.met ? "stopped by average.until" : "average.until was not met") + " after " +
          std::to_string(stop.frames) + " of " + std::to_string(stop.frames_there) + " frames: " + compared(until) +
-         " is at most " + rounded(stop.error) + ", wanted " + rounded(until.error);
+         " is at most " + short_number(stop.error) + ", wanted " + short_number(until.error);
 }
 
 }  // namespace grainvdb

@@ -15,7 +15,7 @@ namespace grainvdb {
 namespace {
 
 constexpr std::size_t fields_2d = 6, fields_3d = 8;  ///< of the line before the rows
-const std::string label = "particles";
+const std::string data_label = "particles";
 
 /// The columns that a row has, and behind them those that it does not have but that are known.
 const std::vector<std::string>& written_columns(bool flat) {
@@ -108,7 +108,7 @@ Table MercuryData::read_rows(const TableRequest& request) {
   };
   take(request.real, there.real);
   take(request.whole, there.whole);
-  Table rows = RowReader(lines_, rows_, label, there).read();
+  Table rows = RowReader(lines_, rows_, data_label, there).read();
 
   Table table{rows.rows, rows.first_line, {}, {}};
   auto next = rows.real.begin();

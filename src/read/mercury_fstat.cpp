@@ -15,7 +15,7 @@ namespace {
 
 constexpr char mark = '#';
 constexpr std::size_t ids = 2;  ///< the first columns of the table; then come three of the force
-const std::string label = "contacts";
+const std::string fstat_label = "contacts";
 
 const std::vector<std::string>& written_columns() {
   static const std::vector<std::string> names{"t",   "P",   "I",  "cx", "cy", "cz", "overlap", "tangential overlap",
@@ -147,7 +147,7 @@ bool MercuryFstat::skip_rows() {
 }
 
 Table MercuryFstat::read_rows(const TableRequest& request) {
-  const Table rows = RowReader(lines_, header_, label, needed_columns()).read();
+  const Table rows = RowReader(lines_, header_, fstat_label, needed_columns()).read();
   const std::vector<std::size_t> counted = counted_once(rows, lines_.file());
   Table table{counted.size(), rows.first_line, {}, {}};
   for (const std::size_t column : request.whole) {

@@ -7,6 +7,7 @@
 #include "grainvdb/error.hpp"
 #include "read/number.hpp"
 #include "read/row_kernel.hpp"
+#include "read/text.hpp"
 
 namespace grainvdb {
 namespace {

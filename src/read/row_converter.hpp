@@ -13,9 +13,6 @@ namespace grainvdb {
 
 struct LineIndex;
 
-/// What every section of a text dump begins with.
-constexpr std::string_view item_mark = "ITEM:";
-
 /// Rows converted from one piece of text: `rows` values in each requested column. The vectors may be longer, so that
 /// a block that is used again costs no memory.
 struct RowBlock {

@@ -11,7 +11,7 @@
 namespace grainvdb {
 namespace {
 
-constexpr const char* cut_off_hint = "The file was cut off, or is still being written: leave this frame out";
+constexpr const char* cut_off_frame_hint = "The file was cut off, or is still being written: leave this frame out";
 
 /// What one thread converts at a time. Text and numbers fit into the second-level cache together.
 constexpr std::size_t piece_size = std::size_t{1} << 17;
@@ -160,8 +160,9 @@ void RowReader::fail(const std::string& what, const std::string& found, const st
 
 void RowReader::refuse_end() {
   std::string_view line;
-  if (!lines_.next(line)) fail("the file ends within a frame", std::to_string(table_.rows) + " rows", cut_off_hint);
-  fail("the last line does not end in a newline, so the frame is incomplete", in_quotes(line), cut_off_hint);
+  if (!lines_.next(line))
+    fail("the file ends within a frame", std::to_string(table_.rows) + " rows", cut_off_frame_hint);
+  fail("the last line does not end in a newline, so the frame is incomplete", in_quotes(line), cut_off_frame_hint);
 }
 
 void RowReader::refuse_line() {

@@ -6,6 +6,9 @@
 
 namespace grainvdb {
 
+/// What every section of a text dump begins with.
+inline constexpr std::string_view item_mark = "ITEM:";
+
 /// What separates the fields of a line; a carriage return counts, so that lines may end in CRLF.
 constexpr bool is_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r';

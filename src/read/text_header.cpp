@@ -6,11 +6,11 @@
 
 #include "grainvdb/error.hpp"
 #include "read/number.hpp"
+#include "read/text.hpp"
 
 namespace grainvdb {
 namespace {
 
-constexpr std::string_view item_mark = "ITEM:";
 constexpr std::string_view cut_off_hint = "The file was cut off, or is still being written";
 
 std::string_view trimmed(std::string_view text) {

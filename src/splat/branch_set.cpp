@@ -5,13 +5,10 @@
 #include <stdexcept>
 
 #include "base/parallel.hpp"
+#include "base/vec3.hpp"
 
 namespace grainvdb {
 namespace {
-
-double dot(const Vec3& a, const Vec3& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 // What the rules leave of lucy_rule_error, 1e-6 W(0), is spent on wholes: half branches that end off the line of the
 // whole by ε cutoffs err by up to 1.8 ε, as 1.8/c bounds |∇W|/W(0), and as much again when the contact point is shifted

@@ -85,7 +85,7 @@ namespace {
 // A rounding of δ = 1.5e-7 c changes w₁ by a factor 4 δ/(1-ζ): too much for the terms with 1-ζ < 0.06, each of which is
 // less than 1.3e-4 w₁(0). They matter only where a sum is this small against the number of its terms, and is formed
 // again in double:
-constexpr double faint = 2e-4;
+constexpr double faint_part = 2e-4;
 
 // Images of the particles, sorted by the group of planes they lie in.
 struct PlaneEntries {
@@ -158,7 +158,7 @@ class PlaneSplat {
     for (std::size_t from = begin; from < end; from += candidates_per_piece)
       add_piece(first, from, std::min(end, from + candidates_per_piece), sums, plain);
     const double peak = kernel_.marginal(0);
-    const double few = faint * static_cast<double>(end - begin);
+    const double few = faint_part * static_cast<double>(end - begin);
     for (std::size_t p = 0; p < planes_per_group; ++p)
       for (std::size_t c = 0; c < channels_; ++c) {
         double& sum = sums[p * channels_ + c];

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/nan.hpp"
 #include "base/parallel.hpp"
 #include "splat/leaf_finder.hpp"
 
@@ -112,7 +113,6 @@ Place place(const Lattice& lattice, int axis, double x) {
   return {static_cast<std::int32_t>(below), u - below};
 }
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr Vec3 undefined{nan, nan, nan};
 
 // The voxels around a position with their trilinear weights, in lexicographic order.

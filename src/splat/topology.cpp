@@ -8,7 +8,7 @@
 namespace grainvdb {
 namespace {
 
-struct LeafWork {
+struct TopologyWork {
   LeafCandidates candidates;
   Picked near;
 };
@@ -41,9 +41,9 @@ std::shared_ptr<const Topology> particle_topology(const Lattice& lattice, const 
   std::vector<Coord> leaves = leaves_in_reach(lattice, buckets, cutoff);
   if (wanted != nullptr) std::erase_if(leaves, [&](const Coord& leaf) { return !wanted->holds(leaf); });
   std::vector<LeafMask> masks(leaves.size());
-  tbb::enumerable_thread_specific<LeafWork> works;
+  tbb::enumerable_thread_specific<TopologyWork> works;
   parallel_for(leaves.size(), [&](std::size_t l) {
-    LeafWork& work = works.local();
+    TopologyWork& work = works.local();
     const LeafMask stored = LeafWindow(lattice, leaves[l]).mask();
     LeafMask inside;
     LeafMask perhaps;

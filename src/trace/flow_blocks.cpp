@@ -7,7 +7,7 @@
 namespace grainvdb {
 namespace {
 
-constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+constexpr float no_value = std::numeric_limits<float>::quiet_NaN();
 
 /// A run of voxels along one axis of a block that lie in one leaf, periods wrapped.
 struct Run {
@@ -81,7 +81,7 @@ FlowBlocks::FlowBlocks(const Lattice& l, const SparseField& velocity, const Spar
       below(i == Interpolation::trilinear ? 0 : 1),
       edge(leaf_edge + 1 + 2 * below),
       index(*velocity.topology()),
-      values((index.leaf_count() + 1) * block_size(), nan) {
+      values((index.leaf_count() + 1) * block_size(), no_value) {
   Filler filler(*this, velocity, shear_rate);
   parallel_for(index.leaf_count(), [&](std::size_t leaf) { filler.fill(leaf); });
 }

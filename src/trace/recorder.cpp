@@ -11,7 +11,7 @@ namespace grainvdb {
 namespace {
 
 /// Tracers that one task samples.
-constexpr std::size_t chunk = 1024;
+constexpr std::size_t chunk_length = 1024;
 
 /// Components of a recorded field.
 std::size_t width_of(const FieldMeta& field) {
@@ -124,9 +124,9 @@ const TracerSample& TracerRecorder::record(Tracers& tracers, const std::vector<c
     *index_ = LeafIndex(*topology_);
   }
   const std::size_t n = tracers.size();
-  std::vector<Undefined> undefined((n + chunk - 1) / chunk);
+  std::vector<Undefined> undefined((n + chunk_length - 1) / chunk_length);
   parallel_for(undefined.size(), [&](std::size_t c) {
-    record_some(tracers, fields, mask, c * chunk, std::min(n, (c + 1) * chunk), undefined[c]);
+    record_some(tracers, fields, mask, c * chunk_length, std::min(n, (c + 1) * chunk_length), undefined[c]);
   });
   for (const Undefined& u : undefined)
     for (std::size_t bit = 0; bit < u.samples.size(); ++bit) undefined_.samples[bit] += u.samples[bit];

@@ -8,13 +8,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/nan.hpp"
 #include "base/parallel.hpp"
 #include "trace/advance.hpp"
 
 namespace grainvdb {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double farthest = std::numeric_limits<double>::max();
 constexpr double most_images = 1e6;
 

@@ -18,7 +18,7 @@
 namespace grainvdb {
 namespace {
 
-const std::string group = "/particles/tracers";
+const std::string tracer_group = "/particles/tracers";
 
 constexpr const char* double_number = "NumberType=\"Float\" Precision=\"8\"";
 constexpr const char* float_number = "NumberType=\"Float\" Precision=\"4\"";
@@ -82,15 +82,16 @@ void H5mdSink::begin(const TracerLayout& layout) {
   hdf5_ = std::make_unique<Hdf5File>(*file_);
   describe_file();
   hdf5_->create_group("/particles");
-  hdf5_->create_group(group);
+  hdf5_->create_group(tracer_group);
   hdf5_->create_group("/observables");
   create_element<double>("position", 3, layout.length_unit, "position, wrapped into the box along its periodic axes");
   create_box();
   create_element<std::int32_t>("image", 3, "1", "periods crossed: unwrapped = position + image × edges");
-  hdf5_->create_dataset<std::int64_t>(group + "/id", {tracers()});
-  hdf5_->text_attribute(group + "/id", "units", "1");
-  hdf5_->text_attribute(group + "/id", "long_name", "id of the tracer, or of the particle that it was seeded on");
-  hdf5_->write<std::int64_t>(group + "/id", layout.id);
+  hdf5_->create_dataset<std::int64_t>(tracer_group + "/id", {tracers()});
+  hdf5_->text_attribute(tracer_group + "/id", "units", "1");
+  hdf5_->text_attribute(tracer_group + "/id", "long_name",
+                        "id of the tracer, or of the particle that it was seeded on");
+  hdf5_->write<std::int64_t>(tracer_group + "/id", layout.id);
 }
 
 void H5mdSink::describe_file() {
@@ -107,7 +108,7 @@ void H5mdSink::describe_file() {
 template <class T>
 void H5mdSink::create_element(const std::string& name, int components, const std::string& unit,
                               const std::string& long_name) {
-  const std::string path = group + '/' + name, value = path + "/value";
+  const std::string path = tracer_group + '/' + name, value = path + "/value";
   const hsize_t n = tracers();
   Hdf5Dims row{n}, chunk{samples_per_chunk(), std::min(n, most_tracers)};
   if (components > 1) {
@@ -118,7 +119,7 @@ void H5mdSink::create_element(const std::string& name, int components, const std
   hdf5_->create_growing_dataset<T>(value, row, chunk);
   hdf5_->text_attribute(value, "units", unit);
   hdf5_->text_attribute(value, "long_name", long_name);
-  const std::string first = group + "/position";
+  const std::string first = tracer_group + "/position";
   if (path != first) {
     hdf5_->link(path + "/step", first + "/step");
     hdf5_->link(path + "/time", first + "/time");
@@ -134,7 +135,7 @@ void H5mdSink::create_element(const std::string& name, int components, const std
 
 // MDAnalysis takes the edges from a group over time, as vectors, and nothing else.
 void H5mdSink::create_box() {
-  const std::string path = group + "/box";
+  const std::string path = tracer_group + "/box";
   const Box& box = layout_->box;
   hdf5_->create_group(path);
   hdf5_->attribute<std::int64_t>(path, "dimension", 3);
@@ -146,27 +147,27 @@ void H5mdSink::create_box() {
   hdf5_->create_growing_dataset<double>(path + "/edges/value", {3, 3}, {128, 3, 3});
   hdf5_->text_attribute(path + "/edges/value", "units", layout_->length_unit);
   hdf5_->text_attribute(path + "/edges/value", "long_name", "edges of the box, one vector a row");
-  hdf5_->link(path + "/edges/step", group + "/position/step");
-  hdf5_->link(path + "/edges/time", group + "/position/time");
+  hdf5_->link(path + "/edges/step", tracer_group + "/position/step");
+  hdf5_->link(path + "/edges/time", tracer_group + "/position/time");
 }
 
 void H5mdSink::observe(const TracerDataset& set) {
-  hdf5_->link("/observables/" + set.name, group + '/' + set.name);
+  hdf5_->link("/observables/" + set.name, tracer_group + '/' + set.name);
   observed_.push_back(set);
 }
 
 void H5mdSink::create_columns(const TracerSample& sample) {
   const auto dataset = [&](const std::string& name, std::uint64_t components, const char* number) {
-    return TracerDataset{name, group + '/' + name + "/value", components, number};
+    return TracerDataset{name, tracer_group + '/' + name + "/value", components, number};
   };
   for (const FieldMeta& f : layout_->fields) {
     create_element<float>(f.name, f.components, f.unit, f.description);
-    hdf5_->text_attribute(group + '/' + f.name + "/value", "equation", f.equation);
+    hdf5_->text_attribute(tracer_group + '/' + f.name + "/value", "equation", f.equation);
     observe(dataset(f.name, static_cast<std::uint64_t>(f.components), float_number));
   }
   for (const TracerNumbers& n : numbers_of(sample, *layout_)) {
     create_element<double>(n.name, static_cast<int>(n.values.size()), n.unit, n.description);
-    hdf5_->text_attribute(group + '/' + n.name + "/value", "equation", n.equation);
+    hdf5_->text_attribute(tracer_group + '/' + n.name + "/value", "equation", n.equation);
     observe(dataset(n.name, n.values.size(), double_number));
   }
   create_stop();
@@ -182,8 +183,8 @@ void H5mdSink::create_stop() {
     if (!names.empty()) names += ' ';
     names += name_of(stop);
   }
-  hdf5_->attribute<std::uint8_t>(group + "/stop/value", "flag_values", std::span(std::as_const(values)));
-  hdf5_->text_attribute(group + "/stop/value", "flag_meanings", names);
+  hdf5_->attribute<std::uint8_t>(tracer_group + "/stop/value", "flag_values", std::span(std::as_const(values)));
+  hdf5_->text_attribute(tracer_group + "/stop/value", "flag_meanings", names);
 }
 
 void H5mdSink::write(const TracerSample& sample) {
@@ -193,33 +194,34 @@ void H5mdSink::write(const TracerSample& sample) {
   times_.push_back(sample.time);
   stop_time_ = sample.stop_time;
 
-  hdf5_->append_row<double>(group + "/position/time", std::span(&sample.time, 1));
-  hdf5_->append_row<std::int64_t>(group + "/position/step", std::span(&sample.step, 1));
+  hdf5_->append_row<double>(tracer_group + "/position/time", std::span(&sample.time, 1));
+  hdf5_->append_row<std::int64_t>(tracer_group + "/position/step", std::span(&sample.step, 1));
   const Box& box = layout_->box;
   const double edges[] = {box.length(0), 0, 0, 0, box.length(1), 0, 0, 0, box.length(2)};
-  hdf5_->append_row<double>(group + "/box/edges/value", std::span(edges));
-  hdf5_->append_row<double>(group + "/position/value", interleaved<double>(sample.position));
-  hdf5_->append_row<std::int32_t>(group + "/image/value", interleaved<std::int32_t>(sample.image));
+  hdf5_->append_row<double>(tracer_group + "/box/edges/value", std::span(edges));
+  hdf5_->append_row<double>(tracer_group + "/position/value", interleaved<double>(sample.position));
+  hdf5_->append_row<std::int32_t>(tracer_group + "/image/value", interleaved<std::int32_t>(sample.image));
   for (std::size_t i = 0; i < sample.fields.size(); ++i)
-    hdf5_->append_row<float>(group + '/' + layout_->fields[i].name + "/value", sample.fields[i]);
+    hdf5_->append_row<float>(tracer_group + '/' + layout_->fields[i].name + "/value", sample.fields[i]);
   for (const TracerNumbers& n : numbers_of(sample, *layout_)) {
     std::vector<std::span<const double>> columns;
     for (const std::vector<double>* column : n.values) columns.emplace_back(*column);
-    hdf5_->append_row<double>(group + '/' + n.name + "/value", interleaved<double>(columns));
+    hdf5_->append_row<double>(tracer_group + '/' + n.name + "/value", interleaved<double>(columns));
   }
   std::vector<std::uint8_t> codes;
   for (const TracerStop stop : sample.stop) codes.push_back(static_cast<std::uint8_t>(stop));
-  hdf5_->append_row<std::uint8_t>(group + "/stop/value", codes);
+  hdf5_->append_row<std::uint8_t>(tracer_group + "/stop/value", codes);
   if (times_.size() % samples_per_chunk() == 0) hdf5_->flush();  // a full disk shows early
 }
 
 void H5mdSink::commit(const Provenance& provenance) {
   if (!hdf5_ || times_.empty()) throw std::logic_error("an output of tracers was committed without a sample");
   if (!stop_time_.empty()) {
-    hdf5_->create_dataset<double>(group + "/stop_time", {tracers()});
-    hdf5_->text_attribute(group + "/stop_time", "units", layout_->time_unit);
-    hdf5_->text_attribute(group + "/stop_time", "long_name", "until when a tracer could be followed; NaN: to the end");
-    hdf5_->write<double>(group + "/stop_time", stop_time_);
+    hdf5_->create_dataset<double>(tracer_group + "/stop_time", {tracers()});
+    hdf5_->text_attribute(tracer_group + "/stop_time", "units", layout_->time_unit);
+    hdf5_->text_attribute(tracer_group + "/stop_time", "long_name",
+                          "until when a tracer could be followed; NaN: to the end");
+    hdf5_->write<double>(tracer_group + "/stop_time", stop_time_);
   }
   write_provenance(*hdf5_, provenance);
   hdf5_->close();
@@ -228,8 +230,8 @@ void H5mdSink::commit(const Provenance& provenance) {
   // Everything that can run out of space comes before the first file gets its name.
   AtomicFile sidecar(sidecar_path_);
   write_tracer_sidecar(sidecar, std::filesystem::path(path_).filename().string(), tracers(), times_,
-                       {"position", group + "/position/value", 3, double_number}, {"id", group + "/id", 1, id_number},
-                       observed_);
+                       {"position", tracer_group + "/position/value", 3, double_number},
+                       {"id", tracer_group + "/id", 1, id_number}, observed_);
   sidecar.finish();
   file_->publish();
   sidecar.publish();

@@ -3,7 +3,7 @@
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::bad_frames_test {
 namespace {
 
 using testing::AllOf;
@@ -70,4 +70,4 @@ TEST(BadFrames, AreNoReasonToCallThePipelineInvalid) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::bad_frames_test

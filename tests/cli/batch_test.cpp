@@ -6,7 +6,7 @@
 
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::batch_test {
 namespace {
 
 using nlohmann::json;
@@ -98,4 +98,4 @@ TEST(ProgressFile, ThatCannotBeWrittenEndsTheRun) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::batch_test

@@ -5,7 +5,7 @@
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::errors_test {
 namespace {
 
 using testing::AllOf;
@@ -202,4 +202,4 @@ TEST(Errors, ASelectionThatKeepsNothingIsRefused) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::errors_test

@@ -10,7 +10,7 @@
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::follow_test {
 namespace {
 
 using testing::AllOf;
@@ -172,4 +172,4 @@ TEST(Follow, RefusesWhatHasNoEndAndFramesFromTheEnd) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::follow_test

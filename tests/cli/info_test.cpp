@@ -3,7 +3,7 @@
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::info_test {
 namespace {
 
 using testing::AllOf;
@@ -45,6 +45,26 @@ TEST(Info, NamesTheUnitsOfTheDump) {
   EXPECT_THAT(result.out, HasSubstr("units: lj\n"));
 }
 
+TEST(Info, EstimatesAPipelineOnOtherDumps) {
+  const Folder folder;
+  write_example(folder);
+  folder.write("other/d.txt", dump_text(7));
+  const CommandResult result = run_command({"info", "other/d.txt", "--pipeline", "p.yaml"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("with p.yaml:\nwould use 1 of 1 frames\nstep 7 alone: "),
+                                HasSubstr(" MB by the formula of 'grainvdb graph'")));
+}
+
+TEST(Info, EstimatesAPipelineAtItsScales) {
+  const Folder folder;
+  write_example(folder);
+  folder.write("p.yaml", pipeline_text() + "scales: {cutoff: [1.5, 2], voxel: [0.5, 1]}\n");
+  const CommandResult result = run_command({"info", "frames/dump*.txt", "--pipeline", "p.yaml"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, AllOf(HasSubstr("with p.yaml, cutoff 1.5, voxel 0.5:\nwould use 3 of 3 frames\n"),
+                                HasSubstr("with p.yaml, cutoff 2.0, voxel 1.0:\n")));
+}
+
 TEST(Info, RefusesWhatIsNoDump) {
   const Folder folder;
   folder.write("d.txt", "hello\n");
@@ -52,7 +72,9 @@ TEST(Info, RefusesWhatIsNoDump) {
   EXPECT_EQ(run_command({"info", "no_such_*"}, folder.path()).exit_code, 2);
   EXPECT_EQ(run_command({"info"}, folder.path()).exit_code, 1);
   EXPECT_EQ(run_command({"info", "d.txt", "--dt", "0"}, folder.path()).exit_code, 1);
+  folder.write("good.txt", dump_text(7));
+  EXPECT_EQ(run_command({"info", "good.txt", "--pipeline", "no_such.yaml"}, folder.path()).exit_code, 2);
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::info_test

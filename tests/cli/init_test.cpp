@@ -4,7 +4,7 @@
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::init_test {
 namespace {
 
 using testing::AllOf;
@@ -101,4 +101,4 @@ TEST(Init, RefusesWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::init_test

@@ -7,7 +7,7 @@
 
 #include "cli/command.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::memory_test {
 namespace {
 
 constexpr int edge = 20;
@@ -65,4 +65,4 @@ TEST(Memory, DoesNotGrowWithTheNumberOfFrames) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::memory_test

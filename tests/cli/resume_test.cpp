@@ -9,7 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::resume_test {
 namespace {
 
 using testing::AllOf;
@@ -92,4 +92,4 @@ TEST(Resume, LeavesNothingWhereItIsNotAskedFor) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::resume_test

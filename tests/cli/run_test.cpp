@@ -4,7 +4,7 @@
 #include "cli/example_dumps.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::run_test {
 namespace {
 
 using ::testing::AllOf;
@@ -142,4 +142,4 @@ TEST(Run, UndefinedVoxelsAreCountedByReason) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::run_test

@@ -3,7 +3,7 @@
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::scales_test {
 namespace {
 
 using testing::AllOf;
@@ -116,4 +116,4 @@ TEST(Scales, RefuseWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::scales_test

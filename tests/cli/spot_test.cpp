@@ -4,7 +4,7 @@
 #include "cli/command.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::spot_test {
 namespace {
 
 using ::testing::AllOf;
@@ -65,4 +65,4 @@ output: {fields: [mu]}
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::spot_test

@@ -12,7 +12,7 @@
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::terminal_test {
 namespace {
 
 using testing::HasSubstr;
@@ -85,4 +85,4 @@ TEST(Interrupt, LeavesNoOutput) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::terminal_test

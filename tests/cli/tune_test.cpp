@@ -3,7 +3,7 @@
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::tune_test {
 namespace {
 
 using ::testing::AllOf;
@@ -36,5 +36,15 @@ TEST(Tune, RefusesOptionsThatMakeNoSense) {
   }
 }
 
+TEST(Tune, RefusesSeveralScales) {
+  const Folder folder;
+  write_example(folder);
+  const CommandResult r =
+      run_command({"tune", "p.yaml", "--no-picture", "--set", "scales.cutoff=[2.5, 3]", "--set", "scales.voxel=[1, 1]"},
+                  folder.path());
+  EXPECT_EQ(r.exit_code, 1);
+  EXPECT_THAT(r.err, AllOf(HasSubstr("settings are compared at one scale"), HasSubstr("2 scales")));
+}
+
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::tune_test

@@ -9,7 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
 
-namespace grainvdb::test {
+namespace grainvdb::test::usage_test {
 namespace {
 
 using testing::AllOf;
@@ -187,4 +187,4 @@ TEST(Graph, ShowsWhatWouldRunWithoutTheDumps) {
 }
 
 }  // namespace
-}  // namespace grainvdb::test
+}  // namespace grainvdb::test::usage_test

@@ -19,7 +19,7 @@
 #include "support/sample_dumps.hpp"
 #include "support/uncertain.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::determinism_test {
 namespace {
 
 const std::array<int, 5> steps{60000, 64000, 68000, 72000, 76000};
@@ -215,4 +215,4 @@ TEST(Determinism, ScaledAndUnwrappedPositions) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::determinism_test

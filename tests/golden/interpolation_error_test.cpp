@@ -13,7 +13,7 @@
 
 #include "golden/snapshot.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::interpolation_error_test {
 namespace {
 
 double square(const Vec3& a) {
@@ -245,4 +245,4 @@ TEST_F(InterpolationError, IsWhatTheVoxelSizeExplains) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::interpolation_error_test

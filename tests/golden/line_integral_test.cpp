@@ -11,7 +11,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::line_integral_test {
 namespace {
 
 Result contact_stress(const std::string& line_integral) {
@@ -58,4 +58,4 @@ TEST(DefaultLineIntegral, DiffersFromTheClosedFormByNoMoreThanItsBound) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::line_integral_test

@@ -10,7 +10,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::parsimony_test {
 namespace {
 
 using ::testing::Contains;
@@ -126,4 +126,4 @@ TEST(Parsimony, IntermediateFieldsAreNotWritten) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::parsimony_test

@@ -19,7 +19,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::pipelines_test {
 namespace {
 
 std::string folder() {
@@ -182,4 +182,4 @@ TEST(ShippedPipelines, AreAllTested) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::pipelines_test

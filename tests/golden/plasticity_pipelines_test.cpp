@@ -12,7 +12,7 @@
 #include "grainvdb/run.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::plasticity_pipelines_test {
 namespace {
 
 std::map<std::string, Table> tables_of(const std::string& pipeline) {
@@ -55,4 +55,4 @@ TEST(KinematicPipeline, FindsOneBByTwoWays) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::plasticity_pipelines_test

@@ -16,7 +16,7 @@
 
 #include "golden/snapshot.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::reference_numbers_test {
 namespace {
 
 const char axes[] = "xyz";
@@ -123,4 +123,4 @@ TEST_P(ReferenceNumbers, Agree) {
 INSTANTIATE_TEST_SUITE_P(ShearCell, ReferenceNumbers, ::testing::Values(60000, 76000));
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::reference_numbers_test

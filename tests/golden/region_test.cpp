@@ -12,7 +12,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::region_test {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -164,4 +164,4 @@ TEST(Region, WithoutAVoxelInReachIsRefused) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::region_test

@@ -22,7 +22,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::brute_force_test {
 namespace {
 
 struct Case {
@@ -281,4 +281,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& c) { return std::string(c.param.name); });
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::brute_force_test

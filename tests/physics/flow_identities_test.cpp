@@ -13,7 +13,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::flow_identities_test {
 namespace {
 
 const std::vector<std::string> modes{"two_pass", "two_pass_profile", "one_pass", "one_pass_corrected"};
@@ -238,4 +238,4 @@ TEST(FlowIdentities, FreeFallHasNoStressRatio) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::flow_identities_test

@@ -14,7 +14,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::fluctuations_test {
 namespace {
 
 constexpr double diameter = 0.8e-3;
@@ -137,4 +137,4 @@ INSTANTIATE_TEST_SUITE_P(Modes, Fluctuations,
                                            Case{"one_pass_corrected", "corrected", 1, 1, chance}));
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::fluctuations_test

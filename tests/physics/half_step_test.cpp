@@ -10,7 +10,7 @@
 #include "grainvdb/plan.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::half_step_test {
 namespace {
 
 // As in the deck of the shear cell.
@@ -84,4 +84,4 @@ TEST(HalfStepOfTheShearCell, ReadsForcesForContactsOnly) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::half_step_test

@@ -15,7 +15,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::kinetic_moments_test {
 namespace {
 
 Result run_about(const std::string& reference, Pipeline p, const std::vector<Frame>& frames) {
@@ -226,4 +226,4 @@ TEST(KineticStressFromMoments, AgreesWithTwoSweepsInASmoothFlow) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::kinetic_moments_test

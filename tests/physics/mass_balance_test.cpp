@@ -8,7 +8,7 @@
 
 #include "support/run_in_memory.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::mass_balance_test {
 namespace {
 
 constexpr double cutoff = 2;
@@ -95,4 +95,4 @@ TEST(MassBalance, ResidualFallsAsTheSquareOfTheTimeBetweenFrames) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::mass_balance_test

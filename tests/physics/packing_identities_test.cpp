@@ -12,7 +12,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::packing_identities_test {
 namespace {
 
 constexpr double unit_sphere = std::numbers::pi / 6;  // volume of a sphere of diameter 1
@@ -157,4 +157,4 @@ TEST(PackingIdentities, MeanDiameterOfAPolydispersePacking) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::packing_identities_test

@@ -10,7 +10,7 @@
 #include "support/scenes.hpp"
 #include "support/uncertain.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::reference_test {
 namespace {
 
 TEST(Reference, KernelIntegratesToOne) {
@@ -127,4 +127,4 @@ TEST(Reference, ScenesReachIntoTheCorners) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::reference_test

@@ -12,7 +12,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::sliding_windows_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -141,4 +141,4 @@ TEST(SlidingWindows, KeepWithinTheMemoryThatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::sliding_windows_test

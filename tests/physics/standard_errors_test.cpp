@@ -16,7 +16,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::standard_errors_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -329,4 +329,4 @@ TEST(StandardErrors, KeepWithinTheMemoryThatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::standard_errors_test

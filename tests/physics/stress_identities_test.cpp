@@ -14,7 +14,7 @@
 #include "support/scenes.hpp"
 #include "support/static_columns.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::stress_identities_test {
 namespace {
 
 using Sum9 = std::array<double, 9>;
@@ -143,4 +143,4 @@ TEST(StressIdentities, GaussRulesFromTheirNodes) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::stress_identities_test

@@ -14,7 +14,7 @@
 #include "support/memory_tracers.hpp"
 #include "support/run_in_memory.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::tracing_test {
 namespace {
 
 using ::testing::AllOf;
@@ -449,4 +449,4 @@ TEST(Trace, RefusesWhatTheInputCannotGive) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::tracing_test

@@ -13,7 +13,7 @@
 #include "support/scenes.hpp"
 #include "support/static_columns.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::wall_force_test {
 namespace {
 
 /// One half branch in a grain of type 1 with the type of its partner.
@@ -196,4 +196,4 @@ TEST(WallForce, WithoutKnownWallGrainsIsRefused) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::wall_force_test

@@ -20,7 +20,7 @@
 #include "support/scenes.hpp"
 #include "support/static_columns.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::walls_test {
 namespace {
 
 using ::testing::Contains;
@@ -504,4 +504,4 @@ TEST(Walls, WallsThatDoNotFitTheBoxAreRefused) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::walls_test

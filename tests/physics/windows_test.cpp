@@ -13,7 +13,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::windows_test {
 namespace {
 
 const std::vector<std::string> fields{
@@ -160,4 +160,4 @@ TEST(Windows, SelectionByIdAndRegion) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::windows_test

@@ -14,7 +14,7 @@
 #include "support/reference.hpp"
 #include "support/run_in_memory.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::flow_test {
 namespace {
 
 // The kernel's own derivative at the edges of a plug: the two sums of the quotient rule cancel to rounding of double,
@@ -123,4 +123,4 @@ TEST(Wave, IsSmoothedAndDifferentiatedAsDerived) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::flow_test

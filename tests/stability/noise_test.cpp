@@ -14,7 +14,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::noise_test {
 namespace {
 
 bool has(const Written& w, const Coord& c, Reason r) {
@@ -192,4 +192,4 @@ TEST(Thresholds, AreRecorded) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::noise_test

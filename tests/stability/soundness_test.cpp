@@ -8,7 +8,7 @@
 
 #include "stability/regimes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::soundness_test {
 namespace {
 
 struct Methods {
@@ -58,4 +58,4 @@ INSTANTIATE_TEST_SUITE_P(Regimes, Soundness, ::testing::ValuesIn(regimes()),
                          [](const auto& each) { return each.param.name; });
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::soundness_test

@@ -9,7 +9,7 @@
 #include "stability/regimes.hpp"
 #include "support/run_in_memory.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::stress_test {
 namespace {
 
 bool has(const Written& w, const Coord& c, Reason r) {
@@ -122,4 +122,4 @@ TEST(RatiosOfAverages, Velocity) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::stress_test

@@ -12,7 +12,7 @@
 #include "support/dump_text.hpp"
 #include "support/run_in_memory.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::follow_test {
 namespace {
 
 constexpr int frame_count = 6;
@@ -67,4 +67,4 @@ TEST(Follow, SumsEachFrameOnceInEachSweep) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::follow_test

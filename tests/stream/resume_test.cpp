@@ -17,7 +17,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::resume_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -207,4 +207,4 @@ TEST_F(Resume, RemovesWhatAKilledRunLeft) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::resume_test

@@ -15,7 +15,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::scales_test {
 namespace {
 
 /// Counts what is read, and fails at a frame.
@@ -132,4 +132,4 @@ TEST_F(Scales, EndWhenTheCallerWants) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::scales_test

@@ -11,7 +11,7 @@
 #include "support/sample_dumps.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::second_sweep_test {
 namespace {
 
 /// Notes what each frame is read for.
@@ -61,4 +61,4 @@ TEST(SecondSweepOfDumps, OpensNoContactsAgain) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::second_sweep_test

@@ -17,7 +17,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::until_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -224,4 +224,4 @@ TEST_F(UntilCertain, WantsAsManyFramesAsBlocks) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::until_test

@@ -1,7 +1,7 @@
 /// Contact dumps that are missing, malformed or not understood.
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::contact_faults_test {
 namespace {
 
 using namespace testing_dumps;
@@ -165,4 +165,4 @@ TEST_F(ContactFaults, SpecificationsThatCannotBeMeant) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::contact_faults_test

@@ -1,7 +1,7 @@
 /// Files that are not dumps, are damaged, or do not go together.
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::file_faults_test {
 namespace {
 
 using namespace testing_dumps;
@@ -137,4 +137,4 @@ TEST_F(FileFaults, ValuesOfThePipelineFileThatCannotBeMeant) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::file_faults_test

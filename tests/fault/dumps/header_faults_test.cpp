@@ -1,7 +1,7 @@
 /// Malformed headers of text dumps: each gives one error with file, line, what was found and what was expected.
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::header_faults_test {
 namespace {
 
 using namespace testing_dumps;
@@ -172,4 +172,4 @@ TEST_F(HeaderFaults, GarbageBetweenFrames) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::header_faults_test

@@ -1,7 +1,7 @@
 /// Malformed rows of particle dumps.
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::row_faults_test {
 namespace {
 
 using namespace testing_dumps;
@@ -140,4 +140,4 @@ TEST_F(RowFaults, LinesAreCountedAfterDecompressionToo) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::row_faults_test

@@ -13,7 +13,7 @@
 #include "support/random.hpp"
 #include "unit/average/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::coverage_test {
 namespace {
 
 using testing::Random;
@@ -159,4 +159,4 @@ TEST(Coverage, IsLostWhereBlocksAreShorterThanTheCorrelation) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::coverage_test

@@ -12,7 +12,7 @@
 #include "grainvdb/topology.hpp"
 #include "support/random.hpp"
 
-namespace grainvdb {
+namespace grainvdb::jackknife_test {
 namespace {
 
 using testing::Random;
@@ -155,4 +155,4 @@ TEST(Jackknife, IsUndefinedWhereAFieldIs) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::jackknife_test

@@ -11,7 +11,7 @@
 
 #include "unit/average/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::moment_sums_test {
 namespace {
 
 MomentMeans finish(MomentSums& sums, std::size_t frames) {
@@ -180,4 +180,4 @@ TEST(MomentSums, UnknownMomentsAreRefused) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::moment_sums_test

@@ -10,7 +10,7 @@
 
 #include "average/growing_blocks.hpp"
 
-namespace grainvdb {
+namespace grainvdb::time_windows_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -125,4 +125,4 @@ TEST(TimeWindows, PartsMakeUpTheWindows) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::time_windows_test

@@ -5,7 +5,7 @@
 #include "average/leave_one_out.hpp"
 #include "unit/average/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::window_sums_test {
 namespace {
 
 const MomentPtr plain = moment("plain");
@@ -180,4 +180,4 @@ TEST(WindowSums, BytesPerLeaf) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::window_sums_test

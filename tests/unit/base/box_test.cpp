@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::box_test {
 namespace {
 
 const Box box{{-1, 2, 0}, {3, 4.5, 1}, {true, false, true}};
@@ -48,4 +48,4 @@ TEST(Box, HasLengths) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::box_test

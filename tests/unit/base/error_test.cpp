@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::error_test {
 namespace {
 
 Problem problem(const std::string& what, const std::string& found = {}, const std::string& expected = {},
@@ -65,4 +65,4 @@ TEST(Error, AllKindsAreErrors) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::error_test

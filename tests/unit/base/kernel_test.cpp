@@ -8,7 +8,7 @@
 
 #include "unit/base/quadrature.hpp"
 
-namespace grainvdb {
+namespace grainvdb::kernel_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -182,4 +182,4 @@ TEST(KernelConstruction, RefusesCutoffsThatAreNotPositiveAndFinite) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::kernel_test

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::lattice_test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -115,4 +115,4 @@ TEST(Lattice, RefusesVoxelsThatAreNotPositiveAndFinite) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::lattice_test

@@ -8,7 +8,7 @@
 #include "grainvdb/kernel.hpp"
 #include "unit/base/quadrature.hpp"
 
-namespace grainvdb {
+namespace grainvdb::line_integral_test {
 namespace {
 
 using Real = long double;
@@ -225,4 +225,4 @@ TEST(GaussRule, RefusesOtherNumbersOfPoints) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::line_integral_test

@@ -9,7 +9,7 @@
 
 #include "grainvdb/kernel.hpp"
 
-namespace grainvdb {
+namespace grainvdb::line_rule_test {
 namespace {
 
 const LucyKernel kernel(1);
@@ -131,4 +131,4 @@ TEST(Reach, IsThatOfTheNearestPointOfTheBranch) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::line_rule_test

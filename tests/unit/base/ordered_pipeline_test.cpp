@@ -13,7 +13,7 @@
 
 #include "base/parallel.hpp"
 
-namespace grainvdb {
+namespace grainvdb::ordered_pipeline_test {
 namespace {
 
 constexpr std::size_t items = 200;
@@ -107,4 +107,4 @@ TEST(OrderedPipelineOfNothing, CallsNothing) {
 INSTANTIATE_TEST_SUITE_P(InFlight, OrderedPipeline, ::testing::Values(1U, 2U, 3U, 16U));
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::ordered_pipeline_test

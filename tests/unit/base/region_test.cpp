@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::region_test {
 namespace {
 
 /// Periodic along x with 20 voxels from -3, open along y and z.
@@ -141,4 +141,4 @@ TEST(Region, ClipsBoxes) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::region_test

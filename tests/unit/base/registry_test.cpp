@@ -9,7 +9,7 @@
 #include "grainvdb/frame.hpp"
 #include "grainvdb/stage.hpp"
 
-namespace grainvdb {
+namespace grainvdb::registry_test {
 namespace {
 
 Stage stage(const std::string& name, std::vector<OptionInfo> options = {}) {
@@ -75,4 +75,4 @@ TEST(ForEachLeaf, VisitsEveryLeafOnce) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::registry_test

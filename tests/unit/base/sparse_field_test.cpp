@@ -9,7 +9,7 @@
 
 #include "grainvdb/grids.hpp"
 
-namespace grainvdb {
+namespace grainvdb::sparse_field_test {
 namespace {
 
 std::shared_ptr<const Topology> two_leaves() {
@@ -78,4 +78,4 @@ TEST(SparseField, EmptyTopologyIsAllBackground) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::sparse_field_test

@@ -8,7 +8,7 @@
 #include "grainvdb/leaf_buffers.hpp"
 #include "grainvdb/mask.hpp"
 
-namespace grainvdb {
+namespace grainvdb::topology_test {
 namespace {
 
 LeafMask mask_of(const std::vector<int>& offsets) {
@@ -105,4 +105,4 @@ TEST(Mask, ReasonsAreDistinctBitsInOrder) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::topology_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::units_test {
 namespace {
 
 std::string symbol(const char* system, const Dimension& d) {
@@ -35,4 +35,4 @@ TEST(Units, SystemsAreFoundByName) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::units_test

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::walls_test {
 namespace {
 
 using Shape = Wall::Shape;
@@ -123,4 +123,4 @@ TEST(WallDomain, RefusesShapesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::walls_test

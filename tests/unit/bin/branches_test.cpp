@@ -8,7 +8,7 @@
 
 #include "grainvdb/error.hpp"
 
-namespace grainvdb {
+namespace grainvdb::branches_test {
 namespace {
 
 void add_particle(Frame& frame, std::int64_t id, const Vec3& x, double radius) {
@@ -171,4 +171,4 @@ TEST(HalfBranches, NeitherPointsNorRadiiIsRefused) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::branches_test

@@ -12,7 +12,7 @@
 
 #include "grainvdb/topology.hpp"
 
-namespace grainvdb {
+namespace grainvdb::buckets_test {
 namespace {
 
 Lattice lattice_of(double h, const Vec3& origin, const Box& box) {
@@ -159,4 +159,4 @@ TEST(Buckets, RefusesWhatCannotBeIndexed) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::buckets_test

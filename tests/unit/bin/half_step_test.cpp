@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::half_step_test {
 namespace {
 
 constexpr double dt = 1e-3;
@@ -215,4 +215,4 @@ TEST(HalfStep, ReadsNoMoreThanItNeeds) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::half_step_test

@@ -8,7 +8,7 @@
 #include "bin/buckets.hpp"
 #include "splat/splat.hpp"
 
-namespace grainvdb {
+namespace grainvdb::leaf_bounds_test {
 namespace {
 
 double active_leaves(const Lattice& lattice, const Columns3& x, double cutoff) {
@@ -70,4 +70,4 @@ TEST(MostLeaves, NoPointsNeedNone) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::leaf_bounds_test

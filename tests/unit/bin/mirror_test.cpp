@@ -9,7 +9,7 @@
 
 #include "bin/inside.hpp"
 
-namespace grainvdb {
+namespace grainvdb::mirror_test {
 namespace {
 
 Wall plane(const Vec3& point, const Vec3& normal) {
@@ -134,4 +134,4 @@ TEST(Inside, BothHalvesOfAContactStayTogether) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::mirror_test

@@ -15,7 +15,7 @@
 #include "unit/derive/fake_input.hpp"
 #include "unit/derive/jacobi.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::brute_force_test {
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
@@ -243,4 +243,4 @@ TEST(BruteForce, SameBytesForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::brute_force_test

@@ -7,7 +7,7 @@
 
 #include "unit/derive/fake_input.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::coaxiality_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -130,4 +130,4 @@ TEST(Coaxiality, GapAndLeastShearRateAreOptions) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::coaxiality_test

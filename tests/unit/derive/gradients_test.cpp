@@ -6,7 +6,7 @@
 
 #include "unit/derive/fake_input.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::gradients_test {
 namespace {
 
 /// A lattice of voxel size h with `n` voxels in a period along every axis, the first of them `first`.
@@ -246,4 +246,4 @@ TEST(ShearRate, VanishesInARigidRotation) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::gradients_test

@@ -10,7 +10,7 @@
 #include "fields/moments.hpp"
 #include "unit/derive/fake_input.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::kernel_gradient_test {
 namespace {
 
 void use_kernel_method(FakeInput& in) {
@@ -170,4 +170,4 @@ TEST(KernelGradient, NeedsTheMomentsOfTheChosenWeighting) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::kernel_gradient_test

@@ -8,7 +8,7 @@
 #include "unit/derive/fake_input.hpp"
 #include "unit/derive/jacobi.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::principal_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -184,4 +184,4 @@ TEST(SlipLines, NeedNoMohrCoulombRatioWithAGivenAngle) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::principal_test

@@ -7,7 +7,7 @@
 
 #include "unit/derive/fake_input.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::registry_test {
 namespace {
 
 struct Expected {
@@ -78,4 +78,4 @@ TEST(DerivedStages, ThresholdsAreDeclaredOnceAndCannotBeNegative) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::registry_test

@@ -6,7 +6,7 @@
 
 #include "unit/derive/fake_input.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::spot_drift_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -97,4 +97,4 @@ TEST(SpotDrift, GravityHasThreeComponents) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::spot_drift_test

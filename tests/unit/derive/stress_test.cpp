@@ -7,7 +7,7 @@
 
 #include "unit/derive/fake_input.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::stress_test {
 namespace {
 
 /// Pressure p and shear stress tau in the xz plane, tension positive.
@@ -132,4 +132,4 @@ TEST(Stress, MohrCoulombNeedsCompressionAllAround) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::stress_test

@@ -6,7 +6,7 @@
 
 #include "unit/derive/fake_input.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::undefined_test {
 namespace {
 
 /// A sheared voxel in which everything is defined; tests spoil one field each.
@@ -156,4 +156,4 @@ TEST(Undefined, NaNPassesThroughEveryStage) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::undefined_test

@@ -10,7 +10,7 @@
 #include "fake_view.hpp"
 #include "grainvdb/units.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::description_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -152,4 +152,4 @@ TEST(FieldDescriptions, NamesTellMomentsApart) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::description_test

@@ -10,7 +10,7 @@
 
 #include "fake_view.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::moments_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -168,4 +168,4 @@ TEST(MomentValues, ContactStress) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::moments_test

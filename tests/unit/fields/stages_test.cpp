@@ -11,7 +11,7 @@
 
 #include "fake_view.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::stages_test {
 namespace {
 
 /// One leaf with three active voxels (0, 1, 2) and moments given by name.
@@ -172,4 +172,4 @@ TEST(FieldStages, FramesAreTheSamples) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::stages_test

@@ -9,7 +9,7 @@
 #include "measure/box_grid.hpp"
 #include "support/random.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::affine_fit_test {
 namespace {
 
 constexpr Vec3 box{2.5, 8, 2.5};
@@ -128,4 +128,4 @@ TEST(BoxGrid, FillsPeriodsAndBeginsAtTheOrigin) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::affine_fit_test

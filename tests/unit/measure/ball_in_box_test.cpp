@@ -10,7 +10,7 @@
 
 #include "support/random.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::ball_in_box_test {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
@@ -81,4 +81,4 @@ TEST(BallInBox, IsTheIntegralInBetween) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::ball_in_box_test

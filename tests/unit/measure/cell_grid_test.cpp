@@ -12,7 +12,7 @@
 
 #include "lattices.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::cell_grid_test {
 namespace {
 
 using Found = std::tuple<std::size_t, double, double, double>;  // of which point, and where its image is
@@ -115,4 +115,4 @@ TEST(NearestImage, IsOneOfAll) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::cell_grid_test

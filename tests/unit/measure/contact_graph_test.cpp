@@ -9,7 +9,7 @@
 
 #include "lattices.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::contact_graph_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -116,4 +116,4 @@ TEST(Backbone, LosesWhatRestsOnWhatIsLost) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::contact_graph_test

@@ -8,7 +8,7 @@
 
 #include "lattices.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::dispersion_test {
 namespace {
 
 const Box cell{{0, 0, 0}, {6, 4, 20}, {true, true, false}};
@@ -148,4 +148,4 @@ TEST(Dispersion, HasNoDiffusivityInTimeWithoutTimes) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::dispersion_test

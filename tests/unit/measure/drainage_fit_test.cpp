@@ -8,7 +8,7 @@
 #include "grainvdb/kinematic.hpp"
 #include "support/random.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::drainage_fit_test {
 namespace {
 
 constexpr KinematicFlow flow{2.28, 1.7};
@@ -121,4 +121,4 @@ TEST(FitProfiles, LeaveOutWhatIsNoProfile) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::drainage_fit_test

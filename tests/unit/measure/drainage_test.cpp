@@ -9,7 +9,7 @@
 #include "support/random.hpp"
 #include "unit/measure/field_scene.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::drainage_test {
 namespace {
 
 const Lattice lattice(0.5, {0, 0, 0});
@@ -155,4 +155,4 @@ TEST(KinematicFit, SaysWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::drainage_test

@@ -10,7 +10,7 @@
 
 #include "unit/measure/synthetic.hpp"
 
-namespace grainvdb {
+namespace grainvdb::field_profile_test {
 namespace {
 
 using testing::scalar;
@@ -239,4 +239,4 @@ TEST(Bins, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::field_profile_test

@@ -9,7 +9,7 @@
 #include "measure/balance.hpp"
 #include "measure/regime.hpp"
 
-namespace grainvdb {
+namespace grainvdb::flow_laws_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -118,4 +118,4 @@ TEST(Drift, IsTheSlopeWithItsError) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::flow_laws_test

@@ -11,7 +11,7 @@
 #include "measure/register.hpp"
 #include "unit/measure/synthetic.hpp"
 
-namespace grainvdb {
+namespace grainvdb::flow_measurements_test {
 namespace {
 
 using testing::column_of;
@@ -197,4 +197,4 @@ TEST(StationarityMeasurement, FindsGravityAndDrift) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::flow_measurements_test

@@ -9,7 +9,7 @@
 
 #include "support/random.hpp"
 
-namespace grainvdb {
+namespace grainvdb::fluidity_fit_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -110,4 +110,4 @@ TEST(FluidityFit, SaysWhyItRefuses) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::fluidity_fit_test

@@ -8,7 +8,7 @@
 
 #include "lattices.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::free_surface_test {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
@@ -99,4 +99,4 @@ TEST(Supported, AreNotThoseInFlight) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::free_surface_test

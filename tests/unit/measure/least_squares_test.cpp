@@ -9,7 +9,7 @@
 
 #include "support/random.hpp"
 
-namespace grainvdb {
+namespace grainvdb::least_squares_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -169,4 +169,4 @@ TEST(LeastSquares, ThrowsForWhatIsNoProblem) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::least_squares_test

@@ -8,7 +8,7 @@
 
 #include "lattices.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::overlaps_test {
 namespace {
 
 TEST(Overlaps, OfOnePair) {
@@ -55,4 +55,4 @@ TEST(Overlaps, AreUndefinedWithoutGrains) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::overlaps_test

@@ -9,7 +9,7 @@
 
 #include "lattices.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::pair_correlation_test {
 namespace {
 
 CountedRegion region(std::vector<double> lo, std::vector<double> hi) {
@@ -120,4 +120,4 @@ TEST(PairCorrelation, IsUndefinedWithoutGrains) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::pair_correlation_test

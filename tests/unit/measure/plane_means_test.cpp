@@ -10,7 +10,7 @@
 #include "support/random.hpp"
 #include "unit/measure/synthetic.hpp"
 
-namespace grainvdb {
+namespace grainvdb::plane_means_test {
 namespace {
 
 using testing::column_of;
@@ -118,4 +118,4 @@ TEST(PlaneProfile, NeedsAnArea) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::plane_means_test

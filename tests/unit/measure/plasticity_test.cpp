@@ -10,7 +10,7 @@
 
 #include "unit/measure/field_scene.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::plasticity_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -200,4 +200,4 @@ TEST(StochasticFlowRule, RefusesPlacesThatAreNone) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::plasticity_test

@@ -9,7 +9,7 @@
 #include "measure/register.hpp"
 #include "unit/measure/synthetic.hpp"
 
-namespace grainvdb {
+namespace grainvdb::profile_test {
 namespace {
 
 using testing::column_of;
@@ -114,4 +114,4 @@ TEST(MeasurementRegistry, DescribesItself) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::profile_test

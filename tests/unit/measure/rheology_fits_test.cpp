@@ -8,7 +8,7 @@
 
 #include "support/random.hpp"
 
-namespace grainvdb {
+namespace grainvdb::rheology_fits_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -114,4 +114,4 @@ TEST(PackingLawFit, SaysWhyItRefuses) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::rheology_fits_test

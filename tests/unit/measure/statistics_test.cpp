@@ -10,7 +10,7 @@
 #include "measure/weighted_sample.hpp"
 #include "support/random.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::statistics_test {
 namespace {
 
 TEST(WeightedSample, OfNumbersByHand) {
@@ -142,4 +142,4 @@ TEST(RunningMoments, DoNotCancel) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::statistics_test

@@ -8,7 +8,7 @@
 #include "grainvdb/kinematic.hpp"
 #include "unit/trace/fields.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::streamlines_test {
 namespace {
 
 const Lattice lattice(0.5, {0, 0, 0});
@@ -61,4 +61,4 @@ TEST(Streamlines, AreUnwrapped) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::streamlines_test

@@ -13,7 +13,7 @@
 #include "lattices.hpp"
 #include "measure/register.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::structure_test {
 namespace {
 
 MeasurementInfo info_of(const std::string& name) {
@@ -220,4 +220,4 @@ TEST(SurfaceAngle, IsRefusedWhereBothHorizontalAxesArePeriodic) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::structure_test

@@ -10,7 +10,7 @@
 #include "measure/cell_grid.hpp"
 #include "measure/fluctuations.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::velocity_correlation_test {
 namespace {
 
 const Box bed{{0, 0, 0}, {30, 12, 12}, {true, true, true}};
@@ -149,4 +149,4 @@ TEST(Fluctuations, LeaveTheGradientAcrossASingleLayerAlone) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::velocity_correlation_test

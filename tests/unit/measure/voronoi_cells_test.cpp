@@ -11,7 +11,7 @@
 #include "lattices.hpp"
 #include "measure/local_packing.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::voronoi_cells_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -136,4 +136,4 @@ TEST(KernelPacking, IsTheFieldOfTheSimpleCubicLattice) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::voronoi_cells_test

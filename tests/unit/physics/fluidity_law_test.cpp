@@ -7,7 +7,7 @@
 #include "grainvdb/laws.hpp"
 #include "unit/physics/printed.hpp"
 
-namespace grainvdb {
+namespace grainvdb::fluidity_law_test {
 namespace {
 
 TEST(FluidityLaw, ZhangKamrinHasThePublishedValues) {
@@ -51,4 +51,4 @@ TEST(FluidityLaw, TableFourAsPrinted) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::fluidity_law_test

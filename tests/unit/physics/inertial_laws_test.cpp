@@ -5,7 +5,7 @@
 #include "grainvdb/laws.hpp"
 #include "unit/physics/printed.hpp"
 
-namespace grainvdb {
+namespace grainvdb::inertial_laws_test {
 namespace {
 
 TEST(FrictionLaw, PrintedValues) {
@@ -50,4 +50,4 @@ TEST(PackingLaw, LimitsOfTheInertialNumber) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::inertial_laws_test

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::kinematic_test {
 namespace {
 
 constexpr KinematicFlow flow{2.28, 1.7};
@@ -105,4 +105,4 @@ TEST(VoidModel, GrainsSpreadAndGatherAgain) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::kinematic_test

@@ -6,7 +6,7 @@
 #include "grainvdb/laws.hpp"
 #include "unit/physics/printed.hpp"
 
-namespace grainvdb {
+namespace grainvdb::kinetic_theory_test {
 namespace {
 
 TEST(KineticTheory, SteadyShearPressureHasThePublishedValues) {
@@ -64,4 +64,4 @@ TEST(KineticTheory, UndefinedOutsideItsRange) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::kinetic_theory_test

@@ -7,7 +7,7 @@
 
 #include "grainvdb/kinematic.hpp"
 
-namespace grainvdb {
+namespace grainvdb::spot_theory_test {
 namespace {
 
 double ball(double radius) {
@@ -94,4 +94,4 @@ TEST(MeanField, SpotsFromASlotMakeTheKinematicFlow) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::spot_theory_test

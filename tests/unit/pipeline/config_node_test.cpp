@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace grainvdb {
+namespace grainvdb::config_node_test {
 namespace {
 
 using testing::HasSubstr;
@@ -120,4 +120,4 @@ TEST(ConfigNode, ValuesOfTheCommandLineStandWhereTheyWereGiven) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::config_node_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::frame_range_test {
 namespace {
 
 using Frames = std::vector<std::size_t>;
@@ -47,4 +47,4 @@ TEST(FrameRange, RefusesOtherTexts) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::frame_range_test

@@ -3,7 +3,7 @@
 
 #include "unit/pipeline/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::half_step_keys_test {
 namespace {
 
 using test::minimal_text;
@@ -56,4 +56,4 @@ TEST(HalfStepKeys, OfAnotherLawAreRefused) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::half_step_keys_test

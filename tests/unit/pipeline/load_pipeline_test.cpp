@@ -5,7 +5,7 @@
 
 #include "unit/pipeline/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::load_pipeline_test {
 namespace {
 
 using test::load;
@@ -254,4 +254,4 @@ TEST(LoadPipeline, AverageUntil) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::load_pipeline_test

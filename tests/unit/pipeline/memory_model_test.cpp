@@ -4,7 +4,7 @@
 
 #include "unit/pipeline/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::memory_model_test {
 namespace {
 
 Pipeline pipeline_of(const std::vector<std::string>& fields) {
@@ -98,4 +98,4 @@ TEST(MemoryModel, KnowsOfTheForcesThatCorrectContacts) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::memory_model_test

@@ -4,7 +4,7 @@
 #include "grainvdb/plan.hpp"
 #include "unit/pipeline/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::mutation_test {
 namespace {
 
 const std::string seed_text =
@@ -75,4 +75,4 @@ TEST(Mutations, EndWithAPipelineOrOneError) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::mutation_test

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::number_test {
 namespace {
 
 TEST(ParseNumber, TakesDecimalForms) {
@@ -56,4 +56,4 @@ TEST(ParseNumber, DoesNotDependOnTheLocale) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::number_test

@@ -7,7 +7,7 @@
 #include "grainvdb/memory_model.hpp"
 #include "unit/pipeline/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::plan_test {
 namespace {
 
 using test::example_moment;
@@ -294,4 +294,4 @@ TEST(Describe, DrawsTheGraph) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::plan_test

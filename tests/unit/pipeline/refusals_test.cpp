@@ -5,7 +5,7 @@
 #include "grainvdb/field_sink.hpp"
 #include "unit/pipeline/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::refusals_test {
 namespace {
 
 using test::minimal_text;
@@ -229,4 +229,4 @@ TEST(Refusals, OverridesSayWhichOneIsWrong) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::refusals_test

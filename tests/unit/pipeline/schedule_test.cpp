@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-namespace grainvdb {
+namespace grainvdb::schedule_test {
 namespace {
 
 std::vector<Visit> visits_of(const TimeWindows& windows, std::size_t frames, std::size_t sweeps) {
@@ -48,4 +48,4 @@ TEST(CertainVisits, AreMostOfThem) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::schedule_test

@@ -5,7 +5,7 @@
 
 #include "unit/pipeline/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::schema_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -54,4 +54,4 @@ TEST(Schema, HasAHelpTextForEverything) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::schema_test

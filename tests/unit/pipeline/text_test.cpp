@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::text_test {
 namespace {
 
 const std::vector<std::string> fields{"phi", "velocity", "velocity_gradient", "temperature", "mu", "kinetic_stress"};
@@ -47,4 +47,4 @@ TEST(JoinChoices, ReadsAsASentence) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::text_test

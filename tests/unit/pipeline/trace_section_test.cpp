@@ -4,7 +4,7 @@
 
 #include "unit/pipeline/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::trace_section_test {
 namespace {
 
 using test::load;
@@ -150,4 +150,4 @@ TEST(TraceSection, RefusesWhatDoesNotGoTogether) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::trace_section_test

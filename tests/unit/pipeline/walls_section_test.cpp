@@ -7,7 +7,7 @@
 
 #include "unit/pipeline/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::walls_section_test {
 namespace {
 
 using test::load;
@@ -131,4 +131,4 @@ TEST(WallsSection, HasASchemaForItems) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::walls_section_test

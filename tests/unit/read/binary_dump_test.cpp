@@ -4,7 +4,7 @@
 
 #include "unit/read/sample_formats.hpp"
 
-namespace grainvdb {
+namespace grainvdb::binary_dump_test {
 namespace {
 
 using namespace testing_dumps;
@@ -176,4 +176,4 @@ TEST_F(BinaryDumps, RefusesValuesThatAreNoNumbers) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::binary_dump_test

@@ -2,7 +2,7 @@
 
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::byte_stream_test {
 namespace {
 
 using namespace testing_dumps;
@@ -99,4 +99,4 @@ TEST(ByteStream, DirectoryIsAnIoError) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::byte_stream_test

@@ -1,7 +1,7 @@
 /// Columns of contact dumps: by the keywords of the compute, by a map, by plain names.
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::contact_table_test {
 namespace {
 
 using namespace testing_dumps;
@@ -116,4 +116,4 @@ TEST_F(ContactTableTest, NoContactsIsAFrame) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::contact_table_test

@@ -3,7 +3,7 @@
 
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::dialects_test {
 namespace {
 
 using namespace testing_dumps;
@@ -151,4 +151,4 @@ TEST(LammpsDump, SiloInThreeDumps) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::dialects_test

@@ -1,7 +1,7 @@
 /// The index of frames, the counters, and how files are told apart, through the public interface.
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::dump_series_test {
 namespace {
 
 using namespace testing_dumps;
@@ -206,4 +206,4 @@ TEST_F(DumpSeriesTest, ATruncatedLastFrameLeavesTheOthersUsable) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::dump_series_test

@@ -1,7 +1,7 @@
 /// One run in every encoding gives the same frames.
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::encodings_test {
 namespace {
 
 using namespace testing_dumps;
@@ -172,4 +172,4 @@ TEST_F(EncodingsTest, PositionEncodingsAgreeToTheirPrintedDigits) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::encodings_test

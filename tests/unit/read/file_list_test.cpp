@@ -2,7 +2,7 @@
 
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::file_list_test {
 namespace {
 
 using namespace testing_dumps;
@@ -81,4 +81,4 @@ TEST_F(FileListTest, Refusals) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::file_list_test

@@ -2,7 +2,7 @@
 
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::followed_input_test {
 namespace {
 
 using namespace testing_dumps;
@@ -152,4 +152,4 @@ TEST_F(FollowedInputTest, CompressedFilesAreThereWhenTheyAreWhole) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::followed_input_test

@@ -2,7 +2,7 @@
 #include "read/file_number.hpp"
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::foreign_formats_test {
 namespace {
 
 using namespace testing_dumps;
@@ -66,4 +66,4 @@ TEST(FileNumber, IsThatAtTheEndOfTheName) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::foreign_formats_test

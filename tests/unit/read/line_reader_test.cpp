@@ -2,7 +2,7 @@
 
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::line_reader_test {
 namespace {
 
 using namespace testing_dumps;
@@ -100,4 +100,4 @@ TEST_F(LineReaderTest, ReadsNoMoreThanAFirstPieceForAHeader) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::line_reader_test

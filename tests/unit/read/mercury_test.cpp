@@ -2,7 +2,7 @@
 /// a LIGGGHTS run in its format, and the small files here follow its source.
 #include "unit/read/sample_formats.hpp"
 
-namespace grainvdb {
+namespace grainvdb::mercury_test {
 namespace {
 
 using namespace testing_dumps;
@@ -179,4 +179,4 @@ TEST_F(Mercury, RefusesContactsThatCannotBeMeant) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::mercury_test

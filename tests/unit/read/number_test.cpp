@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::number_test {
 namespace {
 
 double real(std::string_view token) {
@@ -66,4 +66,4 @@ TEST(ParseWhole, RefusesFractionsExponentsAndOverflow) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::number_test

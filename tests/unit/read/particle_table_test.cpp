@@ -3,7 +3,7 @@
 
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::particle_table_test {
 namespace {
 
 using namespace testing_dumps;
@@ -109,4 +109,4 @@ TEST_F(ParticleTableTest, BlanksAroundFieldsDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::particle_table_test

@@ -11,7 +11,7 @@
 #include "support/random.hpp"
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::row_kernel_test {
 namespace {
 
 using testing::Random;
@@ -296,4 +296,4 @@ TEST_P(RowKernel, CountsLinesAndThoseThatMayBeginASection) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::row_kernel_test

@@ -7,7 +7,7 @@
 
 #include "support/random.hpp"
 
-namespace grainvdb {
+namespace grainvdb::row_order_test {
 namespace {
 
 using testing::Random;
@@ -85,4 +85,4 @@ TEST(RowOrder, MovesAllColumns) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::row_order_test

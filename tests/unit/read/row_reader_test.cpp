@@ -8,7 +8,7 @@
 #include "support/random.hpp"
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::row_reader_test {
 namespace {
 
 using namespace testing_dumps;
@@ -217,4 +217,4 @@ TEST_F(RowReaderTest, DoesNotTrustTheCount) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::row_reader_test

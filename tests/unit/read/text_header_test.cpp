@@ -2,7 +2,7 @@
 
 #include "unit/read/dump_files.hpp"
 
-namespace grainvdb {
+namespace grainvdb::text_header_test {
 namespace {
 
 using namespace testing_dumps;
@@ -82,4 +82,4 @@ TEST_F(TextHeaderTest, ATiltedBoxWithoutTiltIsOrthogonal) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::text_header_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::text_test {
 namespace {
 
 TEST(TakeToken, SplitsAtBlanksTabsAndCarriageReturns) {
@@ -35,4 +35,4 @@ TEST(IsName, PrintableAndNotEndless) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::text_test

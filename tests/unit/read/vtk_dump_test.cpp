@@ -3,7 +3,7 @@
 #include "read/vtk_file.hpp"
 #include "unit/read/sample_formats.hpp"
 
-namespace grainvdb {
+namespace grainvdb::vtk_dump_test {
 namespace {
 
 using namespace testing_dumps;
@@ -142,4 +142,4 @@ TEST_F(VtkFaults, RefusesOtherForms) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::vtk_dump_test

@@ -8,7 +8,7 @@
 
 #include "unit/splat/branch_scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::branch_set_test {
 namespace {
 
 const Box box{{0, 0, 0}, {6, 6, 6}, {true, false, false}};
@@ -120,4 +120,4 @@ TEST(BranchSet, RefusesAbsurdArms) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::branch_set_test

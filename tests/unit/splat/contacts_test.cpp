@@ -10,7 +10,7 @@
 #include "unit/splat/branch_scene.hpp"
 #include "unit/splat/scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::contacts_test {
 namespace {
 
 constexpr LineIntegral exact = LineIntegral::exact();
@@ -213,4 +213,4 @@ TEST(ContactSplatMethods, RefusesWrongNumbersOfValues) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::contacts_test

@@ -12,7 +12,7 @@
 #include "splat/splat.hpp"
 #include "unit/splat/branch_scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::fast_contacts_test {
 namespace {
 
 // The bar of the project, rims included: a voxel that only the rim of one support reaches must be right too.
@@ -216,4 +216,4 @@ TEST(ContactTopology, IsDecidedInDoublePrecision) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::fast_contacts_test

@@ -11,7 +11,7 @@
 #include "splat/splat.hpp"
 #include "unit/splat/scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::fast_particles_test {
 namespace {
 
 class FastParticleSplat : public testing::TestWithParam<Scene> {
@@ -154,4 +154,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, FastParticleSplat, testing::ValuesIn(scenes()),
                          [](const auto& param) { return param.param.name; });
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::fast_particles_test

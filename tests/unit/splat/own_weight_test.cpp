@@ -11,7 +11,7 @@
 #include "splat/splat.hpp"
 #include "unit/splat/scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::own_weight_test {
 namespace {
 
 /// Particles on a lattice with the sum of their weights.
@@ -102,4 +102,4 @@ TEST(OwnWeightCases, RefusesWhatSamplingRefuses) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::own_weight_test

@@ -9,7 +9,7 @@
 #include "splat/splat.hpp"
 #include "unit/splat/scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::particles_test {
 namespace {
 
 class ParticleSplat : public testing::TestWithParam<Scene> {
@@ -225,4 +225,4 @@ TEST(ParticleSplatSum, ParticleBetweenVoxelsBeyondItsReachGivesNoVoxels) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::particles_test

@@ -10,7 +10,7 @@
 
 #include "unit/splat/scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::profile_test {
 namespace {
 
 // The bar of the project, relative to the sum of |terms|.
@@ -114,4 +114,4 @@ TEST(PlaneSplatEdges, IsWhatTheSplatSumsToOverPlanes) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::profile_test

@@ -14,7 +14,7 @@
 #include "splat/splat.hpp"
 #include "unit/splat/scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::sample_test {
 namespace {
 
 // Leaf buffers with the given channels at the given voxels.
@@ -231,4 +231,4 @@ TEST(SampleEdges, NoPositionsGiveNoSamples) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::sample_test

@@ -12,7 +12,7 @@
 #include "splat/splat.hpp"
 #include "unit/splat/scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::second_moments_test {
 namespace {
 
 using SM = SecondMoments;
@@ -147,4 +147,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, SecondMomentSplat, testing::ValuesIn(scenes()),
                          [](const auto& param) { return param.param.name; });
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::second_moments_test

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb::spot {
+namespace grainvdb::spot::container_test {
 namespace {
 
 Container silo(Orifice::Shape shape) {
@@ -40,4 +40,4 @@ TEST(Container, ThePlateHasALowerSideToo) {
 }
 
 }  // namespace
-}  // namespace grainvdb::spot
+}  // namespace grainvdb::spot::container_test

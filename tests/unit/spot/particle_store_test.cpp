@@ -10,7 +10,7 @@
 #include "spot/random_packing.hpp"
 #include "support/random.hpp"
 
-namespace grainvdb::spot {
+namespace grainvdb::spot::particle_store_test {
 namespace {
 
 double distance(const ParticleStore& store, std::int32_t i, std::int32_t j) {
@@ -123,4 +123,4 @@ TEST(RandomPacking, HasTheFractionAskedForAndNoOverlaps) {
 }
 
 }  // namespace
-}  // namespace grainvdb::spot
+}  // namespace grainvdb::spot::particle_store_test

@@ -13,7 +13,7 @@
 #include "support/dump_text.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::spot {
+namespace grainvdb::spot::spot_file_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -133,4 +133,4 @@ TEST(SpotRun, TakesAPackingFromADump) {
 }
 
 }  // namespace
-}  // namespace grainvdb::spot
+}  // namespace grainvdb::spot::spot_file_test

@@ -10,7 +10,7 @@
 #include "spot/random_packing.hpp"
 #include "spot/snapshot.hpp"
 
-namespace grainvdb::spot {
+namespace grainvdb::spot::spot_model_test {
 namespace {
 
 Container silo() {
@@ -187,4 +187,4 @@ TEST(SpotModel, ABiasLeadsSpotsTowardsParticles) {
 }
 
 }  // namespace
-}  // namespace grainvdb::spot
+}  // namespace grainvdb::spot::spot_model_test

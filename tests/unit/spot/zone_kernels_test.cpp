@@ -11,7 +11,7 @@
 #include "spot/random_packing.hpp"
 #include "support/random.hpp"
 
-namespace grainvdb::spot {
+namespace grainvdb::spot::zone_kernels_test {
 namespace {
 
 Box mixed_box() {
@@ -112,4 +112,4 @@ INSTANTIATE_TEST_SUITE_P(Targets, EveryTarget, ::testing::ValuesIn([] {
                          [](const auto& param) { return std::string(hwy::TargetName(param.param)); });
 
 }  // namespace
-}  // namespace grainvdb::spot
+}  // namespace grainvdb::spot::zone_kernels_test

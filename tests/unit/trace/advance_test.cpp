@@ -14,7 +14,7 @@
 #include "support/random.hpp"
 #include "unit/trace/fields.hpp"
 
-namespace grainvdb {
+namespace grainvdb::advance_test {
 namespace {
 
 using testing::grid_of;
@@ -199,4 +199,4 @@ TEST_P(EveryTarget, AdaptiveStepsAddUpToTheirTolerances) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::advance_test

@@ -14,7 +14,7 @@
 #include "unit/trace/orifice.hpp"
 #include "unit/trace/state.hpp"
 
-namespace grainvdb {
+namespace grainvdb::convergence_test {
 namespace {
 
 using testing::grid_of;
@@ -118,4 +118,4 @@ TEST(Convergence, FineGridsGiveTheErrorsOfTheOrificeFlow) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::convergence_test

@@ -14,7 +14,7 @@
 #include "trace/leaf_index.hpp"
 #include "unit/trace/fields.hpp"
 
-namespace grainvdb {
+namespace grainvdb::flow_test {
 namespace {
 
 using testing::field_of;
@@ -247,4 +247,4 @@ TEST(Flow, RefusesFramesThatDoNotFit) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::flow_test

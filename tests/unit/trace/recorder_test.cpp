@@ -14,7 +14,7 @@
 #include "support/random.hpp"
 #include "unit/trace/fields.hpp"
 
-namespace grainvdb {
+namespace grainvdb::recorder_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -306,4 +306,4 @@ TEST(TracerRecorder, RefusesWhatWasNotAnnounced) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::recorder_test

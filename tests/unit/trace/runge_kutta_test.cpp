@@ -12,7 +12,7 @@
 #include "unit/trace/orifice.hpp"
 #include "unit/trace/state.hpp"
 
-namespace grainvdb {
+namespace grainvdb::runge_kutta_test {
 namespace {
 
 using namespace HWY_NAMESPACE;  // NOLINT: the steps, for the instruction set of this build
@@ -114,4 +114,4 @@ TEST(RungeKutta, EstimateOfThePairHoldsWhereTheVelocityBends) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::runge_kutta_test

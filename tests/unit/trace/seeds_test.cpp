@@ -12,7 +12,7 @@
 #include "grainvdb/error.hpp"
 #include "grainvdb/tracer_sink.hpp"
 
-namespace grainvdb {
+namespace grainvdb::seeds_test {
 namespace {
 
 using ::testing::DoubleNear;
@@ -119,4 +119,4 @@ TEST(TracerStop, HasNames) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::seeds_test

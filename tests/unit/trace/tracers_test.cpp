@@ -17,7 +17,7 @@
 #include "support/random.hpp"
 #include "unit/trace/fields.hpp"
 
-namespace grainvdb {
+namespace grainvdb::tracers_test {
 namespace {
 
 using testing::grid_of;
@@ -459,4 +459,4 @@ TEST(Tracers, RefuseWhatCannotBeMeant) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::tracers_test

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::field_error_test {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -109,4 +109,4 @@ TEST(ReferencePoints, AreAFairSample) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::field_error_test

@@ -12,7 +12,7 @@
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
 
-namespace grainvdb::testing {
+namespace grainvdb::testing::knobs_test {
 namespace {
 
 using ::testing::Contains;
@@ -51,4 +51,4 @@ TEST(Knobs, OptionsOfStagesThatRun) {
 }
 
 }  // namespace
-}  // namespace grainvdb::testing
+}  // namespace grainvdb::testing::knobs_test

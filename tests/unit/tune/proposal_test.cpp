@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace grainvdb {
+namespace grainvdb::proposal_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -75,4 +75,4 @@ TEST(Proposal, CombinationsThatPromiseTheMost) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::proposal_test

@@ -3,7 +3,7 @@
 
 #include "grainvdb/tune.hpp"
 
-namespace grainvdb {
+namespace grainvdb::table_test {
 namespace {
 
 using ::testing::AllOf;
@@ -51,4 +51,4 @@ TEST(TuneTable, HasARowPerSettingAndField) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::table_test

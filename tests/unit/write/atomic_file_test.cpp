@@ -12,7 +12,7 @@
 #include "unit/write/limit_file_size.hpp"
 #include "unit/write/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::atomic_file_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -165,4 +165,4 @@ TEST(RemoveFile, TakesAMissingFileForDone) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::atomic_file_test

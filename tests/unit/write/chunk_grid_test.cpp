@@ -4,7 +4,7 @@
 
 #include "unit/write/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::chunk_grid_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -79,4 +79,4 @@ TEST(ChunkGrid, GathersOnlyActiveVoxelsOverTheBackground) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::chunk_grid_test

@@ -8,7 +8,7 @@
 #include "unit/write/hdf5_reader.hpp"
 #include "unit/write/tracer_scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::h5md_sink_test {
 namespace {
 
 using namespace testing;  // NOLINT: the folder's own helpers
@@ -228,4 +228,4 @@ TEST(H5mdSink, GivesTheSameBytesForTheSameResult) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::h5md_sink_test

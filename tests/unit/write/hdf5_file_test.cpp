@@ -9,7 +9,7 @@
 #include "unit/write/limit_file_size.hpp"
 #include "unit/write/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::hdf5_file_test {
 namespace {
 
 using namespace testing;  // NOLINT: the folder's own helpers
@@ -88,4 +88,4 @@ TEST(Hdf5File, ReportsTheSystemsErrorAndClosesInGoodOrderAfterIt) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::hdf5_file_test

@@ -11,7 +11,7 @@
 #include "unit/write/hdf5_reader.hpp"
 #include "unit/write/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::hdf5_sink_test {
 namespace {
 
 using namespace testing;  // NOLINT: the folder's own helpers
@@ -411,4 +411,4 @@ TEST(Hdf5Sink, RefusesToBeUsedOutOfOrder) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::hdf5_sink_test

@@ -5,7 +5,7 @@
 #include "grainvdb/frame_source.hpp"
 #include "unit/write/tracer_scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::lammps_tracer_sink_test {
 namespace {
 
 using namespace testing;  // NOLINT: the folder's own helpers
@@ -108,4 +108,4 @@ TEST(LammpsTracerSink, IsReadBackExactlyByOurOwnReader) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::lammps_tracer_sink_test

@@ -2,7 +2,7 @@
 
 #include "grainvdb/field_sink.hpp"
 
-namespace grainvdb {
+namespace grainvdb::sink_registry_test {
 namespace {
 
 TEST(SinkRegistry, ListsTheFormats) {
@@ -16,4 +16,4 @@ TEST(SinkRegistry, ListsTheFormats) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::sink_registry_test

@@ -9,7 +9,7 @@
 #include "unit/write/hdf5_reader.hpp"
 #include "unit/write/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::table_sinks_test {
 namespace {
 
 using namespace testing;  // NOLINT: the folder's own helpers
@@ -87,4 +87,4 @@ TEST(Tables, AFolderThatCannotBeMadeIsAnIoError) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::table_sinks_test

@@ -8,7 +8,7 @@
 #include "unit/write/limit_file_size.hpp"
 #include "unit/write/tracer_scene.hpp"
 
-namespace grainvdb {
+namespace grainvdb::tracer_sinks_test {
 namespace {
 
 using namespace testing;  // NOLINT: the folder's own helpers
@@ -156,4 +156,4 @@ TEST(TracerSinks, KeepTheDataFileBackWhenItsSidecarCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::tracer_sinks_test

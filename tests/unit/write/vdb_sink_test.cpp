@@ -8,7 +8,7 @@
 #include "grainvdb/error.hpp"
 #include "unit/write/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::vdb_sink_test {
 namespace {
 
 using namespace testing;  // NOLINT: the folder's own helpers
@@ -215,4 +215,4 @@ TEST(VdbSink, RefusesToBeUsedOutOfOrder) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::vdb_sink_test

@@ -8,7 +8,7 @@
 #include "unit/write/limit_file_size.hpp"
 #include "unit/write/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::write_errors_test {
 namespace {
 
 using namespace testing;  // NOLINT: the folder's own helpers
@@ -112,4 +112,4 @@ TEST(WriteErrors, ASidecarThatCannotBeWrittenKeepsTheDataFileBack) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::write_errors_test

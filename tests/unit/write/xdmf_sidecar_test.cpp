@@ -4,7 +4,7 @@
 
 #include "unit/write/support.hpp"
 
-namespace grainvdb {
+namespace grainvdb::xdmf_sidecar_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -111,4 +111,4 @@ TEST(XdmfSidecar, EscapesWhatXmlReserves) {
 }
 
 }  // namespace
-}  // namespace grainvdb
+}  // namespace grainvdb::xdmf_sidecar_test
