@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "cli/commands.hpp"
+#include "cli/subcommands.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -9,11 +10,9 @@ constexpr const char* completion_footer = R"(Examples:
   source <(grainvdb completion)
   grainvdb completion > ~/.local/share/bash-completion/completions/grainvdb)";
 
-const auto any = [](const CLI::App*) { return true; };
-
 std::string words_of(const CLI::App& app) {
   std::string words;
-  for (const CLI::App* command : app.get_subcommands(any)) words += command->get_name() + ' ';
+  for (const CLI::App* command : subcommands_of(app)) words += command->get_name() + ' ';
   for (const CLI::Option* option : app.get_options())
     for (const std::string& name : option->get_lnames()) words += "--" + name + ' ';
   if (!words.empty()) words.pop_back();
@@ -23,12 +22,12 @@ std::string words_of(const CLI::App& app) {
 // The words that may follow each chain of commands, as branches of a shell `case`.
 void write_words(std::ostream& out, const CLI::App& app, const std::string& chain) {
   out << "    \"" << chain << "\") words=\"" << words_of(app) << "\" ;;\n";
-  for (const CLI::App* command : app.get_subcommands(any))
+  for (const CLI::App* command : subcommands_of(app))
     write_words(out, *command, chain + ' ' + command->get_name());
 }
 
 void write_chains(std::ostream& out, const CLI::App& app, const std::string& chain) {
-  for (const CLI::App* command : app.get_subcommands(any)) {
+  for (const CLI::App* command : subcommands_of(app)) {
     const std::string longer = chain + ' ' + command->get_name();
     out << "      \"" << longer << "\") chain=\"" << longer << "\" ;;\n";
     write_chains(out, *command, longer);

@@ -1,6 +1,7 @@
 #include <iostream>
 
 #include "cli/commands.hpp"
+#include "cli/subcommands.hpp"
 #include "grainvdb/version.hpp"
 
 namespace grainvdb::cli {
@@ -9,8 +10,6 @@ namespace {
 constexpr const char* man_footer = R"(Examples:
   grainvdb man > grainvdb.1
   man -l <(grainvdb man))";
-
-const auto any = [](const CLI::App*) { return true; };
 
 // Text as roff prints it: no requests, no hyphens that break copied options.
 std::string roff(const std::string& text) {
@@ -51,7 +50,7 @@ void write_footer(std::ostream& out, const CLI::App& command) {
 }
 
 void write_commands(std::ostream& out, const CLI::App& app, const std::string& chain) {
-  for (const CLI::App* command : app.get_subcommands(any)) {
+  for (const CLI::App* command : subcommands_of(app)) {
     const std::string name = chain + ' ' + command->get_name();
     out << ".SS " << roff(name) << '\n' << roff(command->get_description()) << ".\n";
     for (const CLI::Option* option : command->get_options()) write_option(out, *option);

@@ -30,7 +30,7 @@ Json describe(const MeasurementInfo& info) {
       {"fields", needs.fields},    {"options", options}};
 }
 
-void print_details(const Json& measurement) {
+void print_measurement(const Json& measurement) {
   std::cout << measurement["name"].get<std::string>() << ": " << measurement["description"].get<std::string>() << '\n'
             << "  equation    " << measurement["equation"].get<std::string>() << '\n'
             << "  reads       " << joined(measurement["reads"], "no frames") << '\n'
@@ -38,7 +38,7 @@ void print_details(const Json& measurement) {
   print_options(measurement["options"]);
 }
 
-void print_table(const Json& measurements) {
+void print_measurements(const Json& measurements) {
   for (const Json& m : measurements) {
     std::string name = m["name"];
     name.resize(std::max<std::size_t>(name.size() + 1, 24), ' ');
@@ -47,7 +47,7 @@ void print_table(const Json& measurements) {
   std::cout << "\n'grainvdb measurements NAME' shows one with its equation, what it needs and its options.\n";
 }
 
-void print_markdown(const Json& measurements) {
+void print_page(const Json& measurements) {
   std::cout << "| measurement | what | equation | reads | fields | options (default) |\n|---|---|---|---|---|---|\n";
   for (const Json& m : measurements)
     std::cout << "| `" << m["name"].get<std::string>() << "` | " << cell(m["description"]) << " | "
@@ -58,7 +58,7 @@ void print_markdown(const Json& measurements) {
 void list(const ListRequest& request) {
   Json all = Json::array();
   for (const MeasurementInfo& info : measurement_registry()) all.push_back(describe(info));
-  print_list(request, "measurement", all, {print_table, print_markdown, print_details});
+  print_list(request, "measurement", all, {print_measurements, print_page, print_measurement});
 }
 
 }  // namespace

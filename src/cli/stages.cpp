@@ -47,7 +47,7 @@ Json describe_stage(const Stage& stage) {
           {"options", options}};
 }
 
-void print_details(const Json& stage) {
+void print_stage(const Json& stage) {
   std::cout << stage["name"].get<std::string>() << ": " << stage["description"].get<std::string>() << '\n'
             << "  components  " << stage["components"] << '\n'
             << "  unit        " << stage["unit"].get<std::string>() << '\n'
@@ -58,7 +58,7 @@ void print_details(const Json& stage) {
   print_options(stage["options"]);
 }
 
-void print_table(const Json& stages) {
+void print_stages(const Json& stages) {
   std::cout << std::left;
   for (const Json& stage : stages)
     std::cout << std::setw(24) << stage["name"].get<std::string>() << ' ' << std::setw(2)
@@ -67,7 +67,7 @@ void print_table(const Json& stages) {
   std::cout << "\n'grainvdb stages NAME' shows one with what it needs and its options.\n";
 }
 
-void print_markdown(const Json& stages) {
+void print_fields_page(const Json& stages) {
   std::cout << "| field | components | unit (SI) | what | equation | needs | options (default) |\n"
             << "|---|---|---|---|---|---|---|\n";
   for (const Json& stage : stages) {
@@ -81,7 +81,7 @@ void print_markdown(const Json& stages) {
 void list_stages(const ListRequest& request) {
   Json all = Json::array();
   for (const Stage& stage : StageRegistry::standard().stages()) all.push_back(describe_stage(stage));
-  print_list(request, "stage", all, {print_table, print_markdown, print_details});
+  print_list(request, "stage", all, {print_stages, print_fields_page, print_stage});
 }
 
 }  // namespace

@@ -6,13 +6,10 @@
 #include "grainvdb/run.hpp"
 #include "grainvdb/tune.hpp"
 #include "tune/nine_digits.hpp"
+#include "tune/runs_stage.hpp"
 
 namespace grainvdb {
 namespace {
-
-bool runs(const Plan& plan, const std::string& stage) {
-  return std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage* s) { return s->name == stage; });
-}
 
 /// Voxels of about these multiples of the current size. Where the box is periodic they must divide its lengths, which
 /// the current size does: h · g/m for whole m, g the greatest common divisor of the numbers of voxels.
@@ -58,7 +55,7 @@ Knob option_knob(const Pipeline& pipeline, const std::string& stage, const std::
 std::vector<Knob> default_knobs(const Pipeline& pipeline, const Plan& plan, FrameSource& source) {
   std::vector<Knob> knobs{voxel_knob(pipeline, check_against_input(pipeline, plan, source))};
   const auto add = [&](const std::string& stage, const std::string& name, const std::set<std::string>& left_out) {
-    if (runs(plan, stage)) knobs.push_back(option_knob(pipeline, stage, name, left_out));
+    if (runs_stage(plan, stage)) knobs.push_back(option_knob(pipeline, stage, name, left_out));
   };
   // Rules of more points than five are as slow as `adaptive`, and no more exact where that counts.
   add("contact_stress", "line_integral", {"gauss4", "gauss6", "gauss7", "gauss8"});

@@ -10,6 +10,7 @@
 #include "tune/field_error.hpp"
 #include "tune/nine_digits.hpp"
 #include "tune/proposal.hpp"
+#include "tune/runs_stage.hpp"
 
 namespace grainvdb {
 namespace {
@@ -25,10 +26,6 @@ double steady_seconds() {
 bool has_a_norm(const std::string& field) {
   static const std::set<std::string> without{"principal_axes", "slip_lines", "frames", "mask"};
   return !without.contains(field) && !field.ends_with("_error");
-}
-
-bool runs(const Plan& plan, const std::string& stage) {
-  return std::any_of(plan.stages.begin(), plan.stages.end(), [&](const Stage* s) { return s->name == stage; });
 }
 
 /// Whether the volumes of the grains are read, so that phi costs no column.
@@ -51,9 +48,9 @@ std::vector<std::string> reference_of(const Pipeline& pipeline, const Plan& plan
   const auto shifted = [&](std::size_t axis) { return nine_digits(pipeline.origin[axis] + shift * voxel); };
   std::vector<std::string> set{"lattice.voxel=" + nine_digits(voxel),
                                "lattice.origin=[" + shifted(0) + ',' + shifted(1) + ',' + shifted(2) + ']'};
-  if (runs(plan, "contact_stress")) set.emplace_back("stages.contact_stress.line_integral=exact");
+  if (runs_stage(plan, "contact_stress")) set.emplace_back("stages.contact_stress.line_integral=exact");
   for (const char* stage : {"velocity_gradient", "angular_velocity_gradient"})
-    if (runs(plan, stage)) set.push_back("stages." + std::string(stage) + ".method=kernel");
+    if (runs_stage(plan, stage)) set.push_back("stages." + std::string(stage) + ".method=kernel");
   return set;
 }
 

@@ -6,9 +6,9 @@
 namespace grainvdb::test::bad_frames_test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::vector<std::string> skipping{"run", "p.yaml", "--set", "input.on_error=skip_frame", "--set"};
 

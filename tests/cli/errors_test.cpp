@@ -8,9 +8,9 @@
 namespace grainvdb::test::errors_test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 std::string with(const std::string& from, const std::string& to) {
   std::string text = pipeline_text();

@@ -13,8 +13,8 @@
 namespace grainvdb::test::follow_test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 constexpr int last_step = 400;
 

@@ -6,9 +6,9 @@
 namespace grainvdb::test::info_test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(Info, SaysWhatIsInTheDumps) {
   const Folder folder;

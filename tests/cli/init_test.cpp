@@ -7,9 +7,9 @@
 namespace grainvdb::test::init_test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(Init, WritesAFileThatRuns) {
   const Folder folder;

@@ -12,9 +12,9 @@
 namespace grainvdb::test::resume_test {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 constexpr int frame_count = 40;
 

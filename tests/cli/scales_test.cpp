@@ -6,10 +6,10 @@
 namespace grainvdb::test::scales_test {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::vector<std::string> scales{"--set", "scales.cutoff=[1.5,2]", "--set", "scales.voxel=[0.5,1]"};
 

@@ -15,7 +15,7 @@
 namespace grainvdb::test::terminal_test {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 // What the command prints at a terminal of its own; nothing where the system has no terminals to give.
 std::optional<std::string> printed_at_terminal(const std::vector<std::string>& arguments,

@@ -12,9 +12,9 @@
 namespace grainvdb::test::usage_test {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 CommandResult grainvdb(const std::vector<std::string>& arguments) {
   const Folder folder;
