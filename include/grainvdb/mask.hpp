@@ -30,6 +30,7 @@ enum class Reason : std::uint32_t {
   few_blocks = 1u << 13,            ///< undefined without one of the blocks of frames: its standard error undefined
   behind_wall = 1u << 14,           ///< the centre of the voxel lies behind a wall: every field undefined
   near_wall = 1u << 15,             ///< the kernel comes nearer to a wall than walls.clearance: every field undefined
+  no_stress_gradient = 1u << 16,    ///< the stress is missing on both sides along an axis: its gradient undefined
 };
 
 struct ReasonInfo {

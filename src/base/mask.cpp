@@ -23,6 +23,8 @@ const std::vector<ReasonInfo>& reasons() {
       {Reason::few_blocks, "few_blocks", "no value without one of the blocks of frames: standard error undefined"},
       {Reason::behind_wall, "behind_wall", "the centre of the voxel lies behind a wall"},
       {Reason::near_wall, "near_wall", "the kernel comes nearer to a wall than the clearance"},
+      {Reason::no_stress_gradient, "no_stress_gradient",
+       "the stress is missing on both sides along an axis: its gradient undefined"},
   };
   return all;
 }

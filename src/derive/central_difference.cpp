@@ -91,7 +91,8 @@ Values<N> undefined() {
 }
 
 template <std::size_t N>
-AxisDerivative<N> derivative(NearbyReader<N>& read, const Coord& c, int axis, double h, const Values<N>& u0) {
+AxisDerivative<N> derivative(NearbyReader<N>& read, const Coord& c, int axis, double h, const Values<N>& u0,
+                             Reason none) {
   const std::optional<Values<N>> below = read(shifted(c, axis, -1));
   const std::optional<Values<N>> above = read(shifted(c, axis, 1));
   if (below && above) {
@@ -101,11 +102,11 @@ AxisDerivative<N> derivative(NearbyReader<N>& read, const Coord& c, int axis, do
   }
   if (above) return one_sided(read, c, axis, 1, h, u0, *above);
   if (below) return one_sided(read, c, axis, -1, h, u0, *below);
-  return {undefined<N>(), Reason::no_gradient};
+  return {undefined<N>(), none};
 }
 
 template <std::size_t N>
-void differentiate(const Lattice& lattice, const SparseField& u, SparseField& out, Mask& mask) {
+void differentiate(const Lattice& lattice, const SparseField& u, SparseField& out, Mask& mask, Reason none) {
   const Topology& topology = *u.topology();
   for_each_leaf(topology, [&](std::size_t leaf) {
     NearbyReader<N> read(lattice, u, leaf);
@@ -113,8 +114,8 @@ void differentiate(const Lattice& lattice, const SparseField& u, SparseField& ou
       const Coord c = voxel_at(topology.origin(leaf), offset);
       const std::optional<Values<N>> u0 = read(c);
       for (int axis = 0; axis < 3; ++axis) {
-        const AxisDerivative<N> d =
-            u0 ? derivative(read, c, axis, lattice.voxel(), *u0) : AxisDerivative<N>{undefined<N>(), std::nullopt};
+        const AxisDerivative<N> d = u0 ? derivative(read, c, axis, lattice.voxel(), *u0, none)
+                                       : AxisDerivative<N>{undefined<N>(), std::nullopt};
         if (d.reason) mask.add(leaf, offset, *d.reason);
         for (std::size_t i = 0; i < N; ++i)
           out.leaf(leaf, 3 * static_cast<int>(i) + axis)[offset] = static_cast<float>(d.value[i]);
@@ -125,11 +126,11 @@ void differentiate(const Lattice& lattice, const SparseField& u, SparseField& ou
 
 }  // namespace
 
-void central_difference(const Lattice& lattice, const SparseField& u, SparseField& out, Mask& mask) {
+void central_difference(const Lattice& lattice, const SparseField& u, SparseField& out, Mask& mask, Reason none) {
   if (u.components() == 1) {
-    differentiate<1>(lattice, u, out, mask);
+    differentiate<1>(lattice, u, out, mask, none);
   } else {
-    differentiate<3>(lattice, u, out, mask);
+    differentiate<3>(lattice, u, out, mask, none);
   }
 }
 

@@ -11,8 +11,8 @@ namespace grainvdb {
 /// - both neighbours defined: (u₊ - u₋)/(2h), second order;
 /// - one of them: s [4 (u₁ - u₀) - (u₂ - u₀)]/(2h) towards that side s = ±1, second order, or s (u₁ - u₀)/h where the
 ///   next but one is undefined; Reason::one_sided_gradient;
-/// - none: the three derivatives along that axis are NaN; Reason::no_gradient.
+/// - none: the three derivatives along that axis are NaN; the reason `none`.
 /// All formulas are differences of values, so a constant u gives exactly 0. NaN without a reason where u itself is NaN.
-void central_difference(const Lattice& lattice, const SparseField& u, SparseField& out, Mask& mask);
+void central_difference(const Lattice& lattice, const SparseField& u, SparseField& out, Mask& mask, Reason none);
 
 }  // namespace grainvdb

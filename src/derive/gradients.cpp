@@ -66,7 +66,7 @@ void set_gradient(Stage& stage, const MeanVector& u) {
     if (by_kernel(in.settings())) {
       kernel_gradient(in, u, out);
     } else {
-      central_difference(in.lattice(), in.field(u.field), out, in.mask());
+      central_difference(in.lattice(), in.field(u.field), out, in.mask(), Reason::no_gradient);
     }
   };
 }

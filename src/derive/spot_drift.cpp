@@ -70,7 +70,7 @@ Stage spot_drift() {
   s.needs = [](const StageSettings&) { return StageNeeds{{"density", "slip_lines", "mean_extreme_stress"}, {}, 2}; };
   s.compute = [](const StageInput& in, SparseField& out) {
     // The pressure gradient lies where the drift comes to lie.
-    central_difference(in.lattice(), in.field("mean_extreme_stress"), out, in.mask());
+    central_difference(in.lattice(), in.field("mean_extreme_stress"), out, in.mask(), Reason::no_stress_gradient);
     const Vec3 gravity = gravity_of(in.settings());
     for_each_leaf(in.topology(), [&](std::size_t leaf) {
       const detail::LeafReader<1> density(in.field("density"), leaf);

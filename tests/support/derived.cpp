@@ -253,7 +253,7 @@ void ratio_fields(Voxel& v, const Pipeline& p) {
 /// ∂u_i/∂x_j at component 3 i + j by differences: central, towards the one side that has neighbours (three points, or
 /// two), or none.
 void central_gradient(Voxel& v, const VoxelBox& box, const std::vector<bool>& active, const UncertainField& u,
-                      std::size_t n, const std::string& field) {
+                      std::size_t n, const std::string& field, Reason none = Reason::no_gradient) {
   const auto defined = [&](int axis, int by) -> std::optional<std::size_t> {
     const auto m = box.index(shifted(box.coord(n), axis, by));
     if (!m || !active[*m] || u.at(*m).undefined()) return std::nullopt;
@@ -264,7 +264,7 @@ void central_gradient(Voxel& v, const VoxelBox& box, const std::vector<bool>& ac
     const auto below = defined(axis, -1);
     const auto above = defined(axis, 1);
     if (defined(axis, 0)) {
-      v.note(Reason::no_gradient, {!below && !above, true});
+      v.note(none, {!below && !above, true});
       v.note(Reason::one_sided_gradient, {below.has_value() != above.has_value(), true});
     }
     for (int i = 0; i < u.components; ++i) {
@@ -389,7 +389,7 @@ Derived derive(const VoxelBox& box, const std::vector<bool>& active, const Uncer
   for (std::size_t n = 0; n < box.size(); ++n) {
     if (!active[n]) continue;
     Voxel v(base, out, n);
-    central_gradient(v, box, active, out.fields.at("mean_extreme_stress"), n, "spot_drift");
+    central_gradient(v, box, active, out.fields.at("mean_extreme_stress"), n, "spot_drift", Reason::no_stress_gradient);
     drift(v, pipeline);
   }
   return out;

@@ -42,7 +42,7 @@ std::uint32_t undefined_by(const std::string& field) {
       {"dv_over_d_domega", flow | bits({Reason::no_spin_fluctuation})},
       {"mu_mohr_coulomb", ratio | bits({Reason::tensile_stress})},
       {"slip_lines", ratio | bits({Reason::tensile_stress})},
-      {"spot_drift", ratio | bits({Reason::tensile_stress})},
+      {"spot_drift", ratio | bits({Reason::tensile_stress, Reason::no_stress_gradient})},
       {"coaxiality_angle", rate | bits({Reason::degenerate_strain_axes})}};
   const auto it = known.find(field);
   return it == known.end() ? 0 : it->second;

@@ -78,7 +78,7 @@ TEST(SpotDrift, UndefinedWithoutNeighboursOrSlipLines) {
   alone.set("density", 2.0);
   alone.set("velocity", std::vector<double>(3, 0.0));
   for (double v : alone.values("spot_drift")) EXPECT_TRUE(std::isnan(v));
-  EXPECT_EQ(alone.reasons_at({}), static_cast<std::uint32_t>(Reason::no_gradient));
+  EXPECT_EQ(alone.reasons_at({}), static_cast<std::uint32_t>(Reason::no_stress_gradient));
 
   FakeInput tensile = sloping(0);
   tensile.set("stress", {-4, 0, 0, 0, -2, 0, 0, 0, 1});
