@@ -33,6 +33,9 @@ class Lattice {
   /// a voxel of the period would not have a 31-bit index.
   void set_periods(const Box& box);
 
+  /// The same voxels, with lengths in another unit of this size > 0 [length].
+  Lattice in_unit(double size) const;
+
   double voxel() const { return voxel_; }
   const Vec3& origin() const { return origin_; }
   const std::optional<Period>& period(int axis) const { return period_[axis]; }

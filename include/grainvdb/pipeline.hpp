@@ -11,6 +11,7 @@
 #include "grainvdb/error.hpp"
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/options.hpp"
+#include "grainvdb/reduced_units.hpp"
 #include "grainvdb/stage.hpp"
 #include "grainvdb/trace_spec.hpp"
 #include "grainvdb/walls.hpp"
@@ -70,13 +71,14 @@ struct Pipeline {
   double cutoff = 0;                            ///< c of the kernel [length]
   std::vector<Scale> scales;                    ///< to run at, in place of cutoff and voxel; empty: at these
   std::size_t window = 0;                       ///< frames per time average; 0: all frames in one
-  std::size_t window_step = 0;       ///< frames from the beginning of one average to that of the next; 0: as window
-  std::size_t blocks = 10;           ///< of frames, from whose differences standard errors are estimated
-  std::optional<Until> until;        ///< ends the average before the last frame
-  std::vector<std::string> fields;   ///< what to write, in this order
-  StageSettings stages;              ///< option values of every stage, defaults filled in
-  std::vector<std::string> formats;  ///< of the output: hdf5, vdb
-  std::optional<TraceSpec> trace;    ///< histories of tracers, where they are wanted
+  std::size_t window_step = 0;          ///< frames from the beginning of one average to that of the next; 0: as window
+  std::size_t blocks = 10;              ///< of frames, from whose differences standard errors are estimated
+  std::optional<Until> until;           ///< ends the average before the last frame
+  std::vector<std::string> fields;      ///< what to write, in this order
+  StageSettings stages;                 ///< option values of every stage, defaults filled in
+  std::vector<std::string> formats;     ///< of the output: hdf5, vdb
+  std::optional<ReducedUnits> reduced;  ///< units of all that is written; without: those of the dump
+  std::optional<TraceSpec> trace;       ///< histories of tracers, where they are wanted
   std::map<std::string, OptionValues> measure;  ///< the wanted measurements by name, with their options
   Limits limits;
   std::string resolved;                   ///< this pipeline as YAML with all defaults, for the provenance

@@ -54,7 +54,7 @@ struct RunReport {
   std::vector<std::string> walls;                           ///< where they are and what is done about them, in words
   std::vector<std::string> files;                           ///< written, those of the tracers apart
   std::optional<TraceReport> trace;                         ///< where there were tracers
-  std::vector<Table> tables;                                ///< of the measurements
+  std::vector<Table> tables;                                ///< of the measurements, in the units that are written
   Provenance tables_from;                                   ///< where the tables come from
   ReadCounters read;
 };

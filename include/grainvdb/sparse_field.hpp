@@ -9,6 +9,7 @@
 
 #include "grainvdb/lattice.hpp"
 #include "grainvdb/topology.hpp"
+#include "grainvdb/units.hpp"
 
 namespace grainvdb {
 
@@ -20,6 +21,7 @@ struct FieldMeta {
   std::string description;  ///< one line
   std::string equation;     ///< formula with its tag, e.g. "Σ V W (6)"
   float background = 0.0F;  ///< value where no kernel reaches: 0 for sums such as phi, NaN for ratios such as velocity
+  Dimension dimension{};    ///< of the values
 };
 
 class SparseField {
@@ -50,6 +52,11 @@ class SparseField {
   }
   /// The value at a voxel, the background outside the topology. For tests and look-ups, not for loops.
   float value(const Coord& c, int component = 0) const;
+
+  /// Goes over to another unit, in place: values are divided by `size`, its size in the unit of before, in double
+  /// precision. The grids come to lie on `lattice`, which has the same voxels. Throws std::invalid_argument where the
+  /// background would change.
+  void change_units(double size, std::string unit, const Lattice& lattice);
 
   /// Owner of the OpenVDB grids; see grids.hpp.
   struct Grids;

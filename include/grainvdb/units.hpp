@@ -17,7 +17,7 @@ struct Dimension {
 namespace dimension {
 inline constexpr Dimension none{0, 0, 0}, length{0, 1, 0}, time{0, 0, 1}, mass{1, 0, 0}, velocity{0, 1, -1},
     rate{0, 0, -1}, density{1, -3, 0}, stress{1, -1, -2}, velocity_squared{0, 2, -2}, rate_squared{0, 0, -2},
-    force_density{1, -2, -2};
+    force_density{1, -2, -2}, acceleration{0, 1, -2};
 }
 
 /// A coherent unit system: stress is mass/(length time²). LAMMPS `real`, `metal` and `electron` are not coherent and

@@ -44,6 +44,12 @@ void Lattice::set_periods(const Box& box) {
   }
 }
 
+Lattice Lattice::in_unit(double size) const {
+  Lattice lattice(voxel_ / size, {origin_[0] / size, origin_[1] / size, origin_[2] / size});
+  lattice.period_ = period_;
+  return lattice;
+}
+
 double Lattice::wrap_index(int axis, double u) const {
   if (!period_[axis]) return u;
   const double lo = period_[axis]->first - 0.5;

@@ -1,6 +1,8 @@
 #include "grainvdb/sparse_field.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "base/parallel.hpp"
@@ -24,14 +26,19 @@ Leaf* make_leaf(const Coord& origin, const LeafMask& active, float background) {
   return leaf;
 }
 
+openvdb::math::Transform::Ptr transform_of(const Lattice& lattice) {
+  const double h = lattice.voxel();
+  const Vec3& o = lattice.origin();
+  auto transform = openvdb::math::Transform::createLinearTransform(h);
+  transform->postTranslate({o[0] + h / 2, o[1] + h / 2, o[2] + h / 2});
+  return transform;
+}
+
 }  // namespace
 
 SparseField SparseField::unset(FieldMeta meta, std::shared_ptr<const Topology> topology, const Lattice& lattice) {
   SparseField field(std::move(meta), std::move(topology));
-  const double h = lattice.voxel();
-  const Vec3& o = lattice.origin();
-  const auto transform = openvdb::math::Transform::createLinearTransform(h);
-  transform->postTranslate({o[0] + h / 2, o[1] + h / 2, o[2] + h / 2});
+  const auto transform = transform_of(lattice);
   const float background = field.meta_.background;
   field.grids_->components.resize(field.components_());
   parallel_for(field.components_(), [&](std::size_t c) {
@@ -65,6 +72,19 @@ SparseField::SparseField(FieldMeta meta, std::shared_ptr<const Topology> topolog
 SparseField::~SparseField() = default;
 SparseField::SparseField(SparseField&&) noexcept = default;
 SparseField& SparseField::operator=(SparseField&&) noexcept = default;
+
+void SparseField::change_units(double size, std::string unit, const Lattice& lattice) {
+  if (std::isfinite(meta_.background) && meta_.background != 0)
+    throw std::invalid_argument("the background of a field would depend on its unit");
+  if (size != 1)
+    parallel_for(leaves_.size(), [&](std::size_t l) {
+      std::transform(leaves_[l], leaves_[l] + leaf_size, leaves_[l],
+                     [size](float value) { return static_cast<float>(static_cast<double>(value) / size); });
+    });
+  meta_.unit = std::move(unit);
+  const auto transform = transform_of(lattice);
+  for (const auto& grid : grids_->components) grid->setTransform(transform->copy());
+}
 
 float SparseField::value(const Coord& c, int component) const {
   return grids_->components.at(static_cast<std::size_t>(component))->tree().getValue(openvdb::Coord(c.x, c.y, c.z));

@@ -1,29 +1,18 @@
 #include "grainvdb/units.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+
+#include "base/unit_product.hpp"
 
 namespace grainvdb {
 
 std::string UnitSystem::symbol(const Dimension& d) const {
-  if (d == dimension::none) return "1";
   if (name == "si" && d == dimension::stress) return "Pa";
-  std::string above, below;
-  int below_count = 0;
-  const auto put = [&](const std::string& unit, int power) {
-    if (power == 0) return;
-    std::string& to = power > 0 ? above : below;
-    if (power < 0) ++below_count;
-    if (!to.empty()) to += ' ';
-    to += unit;
-    if (std::abs(power) > 1) to += '^' + std::to_string(std::abs(power));
-  };
-  put(mass, d.mass);
-  put(length, d.length);
-  put(time, d.time);
-  if (above.empty()) above.push_back('1');
-  if (below.empty()) return above;
-  return above + '/' + (below_count > 1 ? '(' + below + ')' : below);
+  UnitProduct product;
+  product.multiply(mass, d.mass);
+  product.multiply(length, d.length);
+  product.multiply(time, d.time);
+  return product.text();
 }
 
 const std::vector<UnitSystem>& unit_systems() {

@@ -16,6 +16,7 @@ namespace {
 SparseField directions(const Lattice& lattice, const SparseField& field) {
   FieldMeta meta = field.meta();
   meta.unit = std::string(1, '1');  // GCC 12 takes "1" for an overlapping copy (-Wrestrict)
+  meta.dimension = dimension::none;
   meta.background = std::numeric_limits<float>::quiet_NaN();
   SparseField unit(meta, field.topology(), lattice);
   for (std::size_t leaf = 0; leaf < field.topology()->leaf_count(); ++leaf)

@@ -40,7 +40,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 FieldMeta meta_of(const Stage& stage, const UnitSystem& units) {
   return {stage.name,       units.symbol(stage.dimension),
           stage.components, stage.description,
-          stage.equation,   stage.additive ? 0.0F : std::numeric_limits<float>::quiet_NaN()};
+          stage.equation,   stage.additive ? 0.0F : std::numeric_limits<float>::quiet_NaN(),
+          stage.dimension};
 }
 
 DerivedFields derive_fields(const Pipeline& pipeline, const std::vector<const Stage*>& stages,

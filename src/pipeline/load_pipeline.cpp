@@ -8,6 +8,7 @@
 #include "pipeline/load_config.hpp"
 #include "pipeline/measure_keys.hpp"
 #include "pipeline/measure_needs.hpp"
+#include "pipeline/reduced_keys.hpp"
 #include "pipeline/resolved.hpp"
 #include "pipeline/scale_keys.hpp"
 #include "pipeline/schema.hpp"
@@ -52,7 +53,8 @@ void check_lattice(const Pipeline& p) {
 }
 
 // What no single key can tell.
-void check_together(const Pipeline& p) {
+void check_together(const Pipeline& p, const Schema& schema) {
+  check_output(p, schema);
   if (p.fields.empty() && !p.trace && p.measure.empty())
     throw ConfigError({Location{p.file},
                        "the section 'output' is missing",
@@ -120,7 +122,8 @@ Location Pipeline::location(const std::string& key) const {
 Pipeline load_pipeline(const std::string& file, const std::vector<std::string>& overrides,
                        const StageRegistry& registry) {
   const Schema schema = make_schema(registry);
-  const CheckedConfig config = load_config(file, overrides, schema);
+  CheckedConfig config = load_config(file, overrides, schema);
+  if (!config.values.contains("output.fields")) config.values.erase("output.formats");
 
   Pipeline pipeline;
   pipeline.file = file;
@@ -132,7 +135,8 @@ Pipeline load_pipeline(const std::string& file, const std::vector<std::string>& 
     if (key.starts_with("input.")) pipeline.input.where.emplace(key, place);
   if (auto& half_step = pipeline.input.contacts.half_step; half_step && half_step->dt == 0)
     half_step->dt = pipeline.input.dt.value_or(0);
-  check_together(pipeline);
+  check_together(pipeline, schema);
+  check_reduced(pipeline, registry);
   // A result is at one scale, and says which.
   std::map<std::string, ConfigValue> values = config.values;
   std::erase_if(values, [](const auto& entry) { return entry.first.starts_with("scales."); });

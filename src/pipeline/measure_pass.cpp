@@ -10,6 +10,7 @@
 #include "grainvdb/memory_model.hpp"
 #include "pipeline/material.hpp"
 #include "pipeline/measure_needs.hpp"
+#include "pipeline/output_units.hpp"
 #include "pipeline/provenance.hpp"
 
 namespace grainvdb {
@@ -112,11 +113,8 @@ void MeasurePass::commit(RunReport& report) {
     for (const Entry& entry : entries_)
       for (Table& table : entry.measurement->tables()) report.tables.push_back(std::move(table));
   });
-  const UnitSystem& units = source_.units();
-  for (Table& table : report.tables) {
-    for (TableColumn& column : table.columns) column.unit = units.symbol(column.dimension);
-    for (Quantity& number : table.numbers) number.unit = units.symbol(number.dimension);
-  }
+  const OutputUnits units(source_.units(), pipeline_.reduced);
+  for (Table& table : report.tables) units.convert(table);
   add_bad_frames(bad_.list(source_), report);
   report.tables_from = provenance_of(pipeline_, plan_, source_, up_to_stop(wanted_, report), report);
   report.frames = std::max(report.frames, measured_);

@@ -26,7 +26,8 @@ constexpr double float_in_grid = 4.25;
 
 // Tracers: what seeds, Tracers and TracerRecorder state, then ids, stop times and a column of places on their way into
 // tracers.h5.
-constexpr double tracer = (8 + 3 * 8) + 118 + 93 + (8 + 8 + 3 * 8);
+constexpr double tracer_sample = 93;
+constexpr double tracer = (8 + 3 * 8) + 118 + tracer_sample + (8 + 8 + 3 * 8);
 
 constexpr double bucket_entry = 4 + 3 * 8 + 3 * 4;  // point, index, local (Buckets)
 constexpr double half_branch = 9 * 8;               // start, arm, force
@@ -210,7 +211,9 @@ MemoryModel memory_model(const Plan& plan, const Pipeline& pipeline) {
   model.per_voxel =
       sum_bytes(plan, pipeline) + std::max(buffered, float_in_grid * at_hand) + float_in_grid * written + mask;
   if (pipeline.trace) {
-    model.per_tracer = tracer + 4 * components_recorded(plan, *pipeline.trace);
+    const double recorded = 4 * components_recorded(plan, *pipeline.trace);
+    model.per_tracer = tracer + recorded;
+    if (pipeline.reduced) model.per_tracer += tracer_sample + recorded;  // converted in a copy
     model.per_voxel += flow_bytes_per_leaf(*pipeline.trace) / leaf_size;
   }
   for (double* bytes : {&model.per_particle, &model.per_particle_image, &model.per_contact, &model.per_contact_image,

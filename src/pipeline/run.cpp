@@ -10,6 +10,7 @@
 #include "base/parallel.hpp"
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/measure_pass.hpp"
+#include "pipeline/output_units.hpp"
 #include "pipeline/provenance.hpp"
 #include "pipeline/run_into.hpp"
 #include "pipeline/schedule.hpp"
@@ -37,7 +38,8 @@ class Writer {
   void commit(RunReport& report);
 
  private:
-  void write(const OutputFields& output);
+  void write(OutputFields& output);
+  void convert(OutputFields& output) const;
   OutputLayout layout(const Topology::Bounds& bounds, const std::vector<const SparseField*>& fields) const;
   bool writes_mask() const;
 
@@ -46,6 +48,9 @@ class Writer {
   FrameSource& source_;
   const Sinks& sinks_;
   Lattice lattice_;
+  OutputUnits units_;
+  Lattice written_lattice_;
+  bool has_time_;
   std::vector<std::size_t> wanted_;
   WindowSchedule schedule_;
   std::optional<Topology::Bounds> series_box_;
@@ -61,6 +66,9 @@ Writer::Writer(const Pipeline& pipeline, const Plan& plan, FrameSource& source, 
       source_(source),
       sinks_(sinks),
       lattice_(check_against_input(pipeline, plan, source)),
+      units_(source.units(), pipeline.reduced),
+      written_lattice_(units_.converted(lattice_)),
+      has_time_(source.frames().front().time.has_value()),
       wanted_(select_frames(pipeline.frames, source.frames().size())),
       schedule_(schedule_windows(time_windows(pipeline, plan), wanted_.size())) {
   if (schedule_.windows.size() == 1) return;
@@ -71,14 +79,23 @@ Writer::Writer(const Pipeline& pipeline, const Plan& plan, FrameSource& source, 
 void Writer::take(OutputFields output) {
   finish();
   // A task may be copied, fields may not.
-  const auto fields = std::make_shared<const OutputFields>(std::move(output));
+  const auto fields = std::make_shared<OutputFields>(std::move(output));
   if (thread_count() == 1) return write(*fields);
   behind_.run([this, fields] { write(*fields); });
 }
 
-void Writer::write(const OutputFields& output) {
+/// Steps stay steps.
+void Writer::convert(OutputFields& output) const {
+  if (has_time_) output.time.time = units_.converted(output.time.time, dimension::time);
+  for (auto& [name, field] : output.fields)
+    if (std::find(pipeline_.fields.begin(), pipeline_.fields.end(), name) != pipeline_.fields.end())
+      units_.convert(field, written_lattice_);
+}
+
+void Writer::write(OutputFields& output) {
   const std::lock_guard lock(turn_);
   clock_.time("write", [&] {
+    convert(output);
     std::vector<const SparseField*> fields;
     for (const std::string& name : pipeline_.fields)
       if (const auto it = output.fields.find(name); it != output.fields.end()) fields.push_back(&it->second);
@@ -93,14 +110,14 @@ void Writer::write(const OutputFields& output) {
 }
 
 OutputLayout Writer::layout(const Topology::Bounds& bounds, const std::vector<const SparseField*>& fields) const {
-  OutputLayout layout(lattice_);
+  OutputLayout layout(written_lattice_);
   layout.first = bounds.first;
   layout.last = bounds.last;
   layout.time_count = schedule_.windows.size();
   for (const SparseField* f : fields) layout.fields.push_back(f->meta());
   layout.has_mask = writes_mask();
-  layout.length_unit = source_.units().length;
-  layout.time_unit = source_.frames().front().time ? source_.units().time : "step";
+  layout.length_unit = units_.symbol(dimension::length);
+  layout.time_unit = has_time_ ? units_.symbol(dimension::time) : "step";
   return layout;
 }
 

@@ -15,6 +15,7 @@ void save_field(ByteWriter& to, const SparseField& field) {
   for (const std::string& text : {meta.name, meta.unit, meta.description, meta.equation}) to.text(text);
   to.number(meta.components);
   to.number(meta.background);
+  to.number(meta.dimension);
   for (std::size_t l = 0; l < field.topology()->leaf_count(); ++l)
     for (int c = 0; c < field.components(); ++c) to.write(field.leaf(l, c), float_bytes);
 }
@@ -24,6 +25,7 @@ SparseField load_field(ByteReader& from, const std::shared_ptr<const Topology>& 
   for (std::string* text : {&meta.name, &meta.unit, &meta.description, &meta.equation}) *text = from.text();
   meta.components = from.number<int>();
   meta.background = from.number<float>();
+  meta.dimension = from.number<Dimension>();
   SparseField field = SparseField::unset(std::move(meta), topology, lattice);
   for (std::size_t l = 0; l < topology->leaf_count(); ++l)
     for (int c = 0; c < field.components(); ++c) from.read(field.leaf(l, c), float_bytes);

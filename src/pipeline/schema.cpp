@@ -15,6 +15,7 @@
 #include "pipeline/key_builders.hpp"
 #include "pipeline/measure_keys.hpp"
 #include "pipeline/option_keys.hpp"
+#include "pipeline/reduced_keys.hpp"
 #include "pipeline/scale_keys.hpp"
 #include "pipeline/text.hpp"
 #include "pipeline/trace_schema.hpp"
@@ -175,16 +176,16 @@ void add_output(Schema& schema, const StageRegistry& registry) {
   schema.sections.push_back({"output", "What to write; needed where nothing is traced or measured.", false, true});
   std::vector<std::string> names;
   for (const Stage& stage : registry.stages()) names.push_back(stage.name);
-  auto fields = texts_key("output", "fields", "Fields, in the order in which they are written.", names,
-                          [](Pipeline& p, const ConfigValue& v) { p.fields = std::get<std::vector<std::string>>(v); });
-  fields.required = true;
-  schema.keys.push_back(fields);
+  schema.keys.push_back(texts_key(
+      "output", "fields", "Fields, in the order in which they are written; needed unless 'reduced' alone is given.",
+      names, [](Pipeline& p, const ConfigValue& v) { p.fields = std::get<std::vector<std::string>>(v); }));
   std::vector<std::string> formats;
   for (const SinkInfo& sink : sink_registry()) formats.push_back(sink.name);
   auto format = texts_key("output", "formats", "File formats.", formats,
                           [](Pipeline& p, const ConfigValue& v) { p.formats = std::get<std::vector<std::string>>(v); });
   format.default_value = std::vector<std::string>{"hdf5"};
   schema.keys.push_back(format);
+  add_reduced_keys(schema);
 }
 
 void add_stages(Schema& schema, const StageRegistry& registry) {

@@ -23,6 +23,12 @@ SparseField negated(const SparseField& field, const Lattice& lattice) {
   return result;
 }
 
+std::vector<FieldMeta> metas(const std::vector<const SparseField*>& fields) {
+  std::vector<FieldMeta> all;
+  for (const SparseField* field : fields) all.push_back(field->meta());
+  return all;
+}
+
 double largest_speed(const SparseField& velocity) {
   double largest = 0;  // squared
   const Topology& topology = *velocity.topology();
@@ -49,9 +55,7 @@ TraceRun::TraceRun(const Pipeline& pipeline, const FrameSource& source, const La
       spec_(*pipeline.trace),
       sinks_(sinks),
       lattice_(lattice),
-      length_unit_(source.units().length),
-      time_unit_(source.units().time),
-      unit_system_(source.units().name),
+      units_(source.units(), pipeline.reduced),
       box_(trace_box(source, wanted)),
       seeds_(seeds),
       first_time_(time_of(source.frames()[wanted.front()])),
@@ -143,7 +147,7 @@ void TraceRun::start(const OutputFields& output) {
                        std::to_string(stops.size()) + " seeds", "places that the kernel reaches from a particle",
                        "'grainvdb info' shows where the particles are"});
   RecordedColumns columns;
-  for (const SparseField* field : recorded(output)) columns.fields.push_back(field->meta());
+  columns.fields = metas(recorded(output));
   columns.strain = spec_.strain;
   columns.step_numbers = true;
   recorder_.emplace(*tracers_, lattice_, columns, spec_.interpolation);
@@ -208,9 +212,17 @@ void TraceRun::move(const Flow& flow, double until) {
 }
 
 void TraceRun::record(const OutputFields& output, std::int64_t step) {
-  const TracerSample& sample = recorder_->record(*tracers_, recorded(output), &output.mask, step);
+  const TracerSample& sample =
+      in_output_units(recorder_->record(*tracers_, recorded(output), &output.mask, step), output);
   for (const auto& sink : sinks_) sink->write(sample);
   ++report_.samples;
+}
+
+const TracerSample& TraceRun::in_output_units(const TracerSample& sample, const OutputFields& output) {
+  if (!units_.reduced()) return sample;
+  written_ = sample;
+  units_.convert(written_, metas(recorded(output)));
+  return written_;
 }
 
 std::vector<const SparseField*> TraceRun::recorded(const OutputFields& output) const {
@@ -222,16 +234,18 @@ std::vector<const SparseField*> TraceRun::recorded(const OutputFields& output) c
 TracerLayout TraceRun::layout(const OutputFields& output) const {
   TracerLayout layout;
   layout.id = seeds_.id;
-  layout.box = box_;
-  for (const SparseField* field : recorded(output)) layout.fields.push_back(field->meta());
-  layout.length_unit = length_unit_;
-  layout.time_unit = time_unit_;
-  layout.unit_system = unit_system_;
+  layout.box = units_.converted(box_);
+  for (const FieldMeta& meta : metas(recorded(output))) layout.fields.push_back(units_.converted(meta));
+  layout.length_unit = units_.symbol(dimension::length);
+  layout.time_unit = units_.symbol(dimension::time);
+  layout.unit_system = units_.system();
   if (report_.through_frames && !backward()) {
     layout.time_meaning = "time of the simulation";
   } else {
-    layout.time_meaning = std::string("time ") + (backward() ? "back " : "") + "from the start" +
-                          (report_.through_frames ? ", at " + print_number(last_time_) : " through the time mean");
+    layout.time_meaning =
+        std::string("time ") + (backward() ? "back " : "") + "from the start" +
+        (report_.through_frames ? ", at " + print_number(units_.converted(last_time_, dimension::time))
+                                : " through the time mean");
   }
   return layout;
 }

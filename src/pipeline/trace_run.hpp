@@ -15,6 +15,7 @@
 #include "grainvdb/trace_report.hpp"
 #include "grainvdb/tracer_recorder.hpp"
 #include "grainvdb/tracer_sink.hpp"
+#include "pipeline/output_units.hpp"
 #include "pipeline/trace_neighbourhood.hpp"
 
 namespace grainvdb {
@@ -51,6 +52,7 @@ class TraceRun {
   void move(const Flow& flow, double until);
   void keep_near(const Flow& flow, double until);
   void record(const OutputFields& output, std::int64_t step);
+  const TracerSample& in_output_units(const TracerSample& sample, const OutputFields& output);
   void take_mean(const OutputFields& output);
   void take_frame(const OutputFields& output);
   TracerLayout layout(const OutputFields& output) const;
@@ -62,7 +64,7 @@ class TraceRun {
   const TraceSpec& spec_;
   const Sinks& sinks_;
   Lattice lattice_;
-  std::string length_unit_, time_unit_, unit_system_;
+  OutputUnits units_;
   Box box_;
   const TracerSeeds& seeds_;
   double first_time_, last_time_;  ///< of the frames
@@ -75,6 +77,7 @@ class TraceRun {
   std::shared_ptr<const FlowGrid> previous_;
   std::optional<Tracers> tracers_;
   std::optional<TracerRecorder> recorder_;
+  TracerSample written_;  ///< the last one, where its units are not those of the dump
   TraceReport report_;
 };
 

@@ -108,6 +108,19 @@ TEST(Lattice, RefusesPeriodsThatCannotBeIndexed) {
   EXPECT_THROW(lattice.set_periods({{4e9, 0, 0}, {4e9 + 16, 1, 1}, {true, false, false}}), std::invalid_argument);
 }
 
+TEST(Lattice, HasTheSameVoxelsInAnotherUnit) {
+  Lattice lattice(0.5, {-1, 0.25, 3});
+  lattice.set_periods({{0, 0, 0}, {4, 1, 1}, {true, false, false}});
+  const Lattice other = lattice.in_unit(0.25);
+  EXPECT_EQ(other.voxel(), 2);
+  EXPECT_EQ(other.origin(), (Vec3{-4, 1, 12}));
+  EXPECT_EQ(other.centre(2, -3), lattice.centre(2, -3) / 0.25);
+  ASSERT_TRUE(other.period(0));
+  EXPECT_EQ(other.period(0)->first, lattice.period(0)->first);
+  EXPECT_EQ(other.period(0)->count, 8);
+  EXPECT_FALSE(other.period(1));
+}
+
 TEST(Lattice, RefusesVoxelsThatAreNotPositiveAndFinite) {
   for (double h : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()})
     EXPECT_THROW(Lattice(h, {0, 0, 0}), std::invalid_argument);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -61,6 +62,25 @@ TEST(SparseField, GridsHaveTheTopologyAndTheLattice) {
     EXPECT_EQ(grid->indexToWorld(openvdb::Coord(2, 4, -6)), openvdb::Vec3d(2.25, 4.25, 0.25));
     EXPECT_EQ(grid->getName(), "velocity");
   }
+}
+
+TEST(SparseField, GoesOverToAnotherUnitInDoublePrecision) {
+  SparseField f = make(two_leaves(), 3, std::numeric_limits<float>::quiet_NaN());
+  f.leaf(0, 2)[leaf_offset({-1, 2, 3})] = 7;
+  f.change_units(0.3, "sqrt(g d)", Lattice(0.25, {0.5, 1, 1.5}));
+  // In single precision both 0.3 and the quotient would be rounded.
+  EXPECT_EQ(f.value({-1, 2, 3}, 2), static_cast<float>(7 / 0.3));
+  EXPECT_NE(f.value({-1, 2, 3}, 2), 7 / 0.3F);
+  EXPECT_TRUE(std::isnan(f.value({-4, 2, 3}, 2)));
+  EXPECT_TRUE(std::isnan(f.value({0, 0, 0}, 1)));
+  EXPECT_EQ(f.meta().unit, "sqrt(g d)");
+  for (const auto& grid : f.grids().components)
+    EXPECT_EQ(grid->indexToWorld(openvdb::Coord(2, 4, -6)), openvdb::Vec3d(1.125, 2.125, 0.125));
+}
+
+TEST(SparseField, RefusesUnitsThatWouldChangeItsBackground) {
+  SparseField f = make(two_leaves(), 1, -2);
+  EXPECT_THROW(f.change_units(2, "m", Lattice(1, {0, 0, 0})), std::invalid_argument);
 }
 
 TEST(SparseField, CanBeMoved) {

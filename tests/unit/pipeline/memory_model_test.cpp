@@ -52,6 +52,19 @@ TEST(MemoryModel, KnowsOfSharedPartsOfWindows) {
   EXPECT_GT(sliding - one, 4 * 2 * 8);  // four parts of a sum and a count of samples
 }
 
+TEST(MemoryModel, CountsTheCopyOfTracersInReducedUnits) {
+  Pipeline p = pipeline_of({});
+  p.trace.emplace();
+  p.trace->record = {"phi", "velocity"};
+  const MemoryModel plain = memory_model(make_plan(p), p);
+  p.reduced = ReducedUnits{1, 1, 1};
+  const MemoryModel reduced = memory_model(make_plan(p), p);
+  constexpr double holes = 1.1;  // of the allocator
+  // Place, displacement, strain, Co, K and stop time; image; stop; four components of fields.
+  EXPECT_NEAR(reduced.per_tracer - plain.per_tracer, holes * ((3 + 3 + 4) * 8 + 3 * 4 + 1 + 4 * 4), 1e-9);
+  EXPECT_EQ(reduced.per_voxel, plain.per_voxel);
+}
+
 // Runs side by side have one program, and the frames that lie between the first and the last of them.
 TEST(MemoryModel, KnowsWhatRunsSideBySideShare) {
   const MemoryModel m = model_of({"contact_stress"});
