@@ -7,7 +7,7 @@ import numpy as np
 
 import grainvdb
 from grainvdb import hdf
-from support import result
+from support import reduced, result
 
 
 class OneMean(unittest.TestCase):
@@ -35,6 +35,18 @@ class OneMean(unittest.TestCase):
         self.assertAlmostEqual(float(velocity.x[0]), 0.2e-3, delta=1e-12)
         self.assertAlmostEqual(float(velocity.x[15]), 6.2e-3, delta=1e-12)
         self.assertEqual(self.fields["stress"].sel(component9="xz").shape, velocity.shape[:3])
+
+    def test_reduced_units_are_named_and_applied(self):
+        with grainvdb.open_fields(reduced()) as fields:
+            self.assertEqual([fields.unit(name) for name in ("x", "time", "velocity", "stress", "phi")],
+                             ["d", "sqrt(d/g)", "sqrt(g d)", "rho_p g d", "1"])
+            self.assertEqual(fields.voxel, 1024 * self.fields.voxel)
+            # Powers of two are exact.
+            np.testing.assert_array_equal(fields.values("velocity"), 64 * self.fields.values("velocity"))
+            np.testing.assert_array_equal(fields.values("stress"), 2 * self.fields.values("stress"))
+            self.assertEqual(fields["velocity"].attrs["units"], "sqrt(g d)")
+            self.assertEqual(fields["velocity"].z.attrs["units"], "d")
+            self.assertIn("sqrt(d/g) = 0.0625 s", fields.provenance["reduced_units"])
 
     def test_reasons_account_for_every_missing_value(self):
         for name in ("mu", "velocity"):

@@ -10,7 +10,7 @@ import unittest
 import numpy as np
 
 from grainvdb import laws
-from support import COMMAND, result, write_tracers
+from support import COMMAND, reduced, result, write_tracers
 
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -47,6 +47,15 @@ class Report(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
         shutil.copy(result() / "fields.hdf", self.folder)
+
+    def test_page_of_reduced_units_names_them(self):
+        shutil.copy(reduced() / "fields.hdf", self.folder)
+        done = report(self.folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = (self.folder / "report/report.html").read_text()
+        self.assertIn("<td>rho_p g d</td>", page)
+        self.assertRegex(page, r"edge \S+ d<")
+        self.assertNotIn(">Pa<", page)
 
     def test_page_holds_everything(self):
         write_tracers(self.folder)

@@ -20,6 +20,15 @@ def result(window: str = "all") -> pathlib.Path:
 
 
 @functools.cache
+def reduced() -> pathlib.Path:
+    """The same in reduced units: d = 1/1024 m, sqrt(d/g) = 1/16 s, rho_p d^3 = 2^-19 kg."""
+    folder = pathlib.Path(_kept.name) / "reduced"
+    subprocess.run([COMMAND, "run", ROOT / "pipelines/shear_cell.yaml", "--set",
+                    f"output.reduced={{diameter: {2**-10}, gravity: 0.25, density: 2048}}", "--output", folder, "--quiet"], check=True)
+    return folder
+
+
+@functools.cache
 def measured() -> pathlib.Path:
     """The output folder of the shipped measurements of structure."""
     folder = pathlib.Path(_kept.name) / "measured"
