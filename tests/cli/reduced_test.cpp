@@ -41,7 +41,7 @@ TEST(ReducedOutput, NamesItsUnitsInEveryFile) {
              expected = plain.read<float>("/VTKHDF/PointData/velocity");
   ASSERT_EQ(found.size(), expected.size());
   for (std::size_t i = 0; i < found.size(); ++i) ASSERT_EQ(found[i], expected[i] / 2) << i;
-  EXPECT_THAT(fields.text("/provenance/reduced_units"), HasSubstr("d = 0.5 m\ng = 8 m/s^2\nrho_p = 4 kg/m^3\n"));
+  EXPECT_THAT(fields.text("/provenance/reduced_units"), HasSubstr("d = 0.5 m\ng = 8.0 m/s^2\nrho_p = 4.0 kg/m^3\n"));
   EXPECT_THAT(fields.text("/provenance/pipeline"), HasSubstr("  reduced:\n    diameter: 0.5\n"));
 
   const Hdf5Reader tracers((folder / "reduced/tracers.h5").string());

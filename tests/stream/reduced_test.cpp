@@ -33,7 +33,7 @@ double size_of(const Dimension& q, const ReducedUnits& u) {
          std::pow(u.gravity, -0.5 * q.time);
 }
 
-/// A double value of other units is within some roundings, measured 4.
+/// The two ways to the size of a unit have less than eight roundings each.
 bool agree(double value, double expected) {
   return (std::isnan(value) && std::isnan(expected)) ||
          std::abs(value - expected) <= 16 * std::numeric_limits<double>::epsilon() * std::abs(expected);
@@ -187,7 +187,7 @@ TEST_F(Reduced, TheProvenanceHasTheScales) {
   const auto it =
       std::find_if(provenance.begin(), provenance.end(), [](const auto& e) { return e.first == "reduced_units"; });
   ASSERT_NE(it, provenance.end());
-  EXPECT_THAT(it->second, HasSubstr("d = 0.0008 m\ng = 9.81 m/s^2\nrho_p = 2500 kg/m^3\nsqrt(d/g) = 0.00903"));
+  EXPECT_THAT(it->second, HasSubstr("d = 8.0e-04 m\ng = 9.81 m/s^2\nrho_p = 2500.0 kg/m^3\nsqrt(d/g) = 0.00903"));
   EXPECT_THAT(it->second, HasSubstr("\nrho_p d^3 = "));
 }
 

@@ -35,7 +35,7 @@ TEST(ReducedKeys, AreDiameterGravityAndDensity) {
   EXPECT_EQ(p.reduced->diameter, 0.8e-3);
   EXPECT_EQ(p.reduced->gravity, 9.81);
   EXPECT_EQ(p.reduced->density, 2500);
-  EXPECT_THAT(p.resolved, HasSubstr("  reduced:\n    diameter: 0.0008\n    gravity: 9.81\n    density: 2500"));
+  EXPECT_THAT(p.resolved, HasSubstr("  reduced:\n    diameter: 8.0e-04\n    gravity: 9.81\n    density: 2500.0"));
 }
 
 TEST(ReducedKeys, CanBeSetOneByOne) {
