@@ -32,7 +32,7 @@ TEST(ReducedUnits, SymbolsOfUnusualQuantities) {
   EXPECT_EQ(ReducedUnits::symbol({1, -1, -1}), "rho_p d sqrt(g d)");
   EXPECT_EQ(ReducedUnits::symbol({0, -1, -1}), "sqrt(g/d)/d");
   EXPECT_EQ(ReducedUnits::symbol({0, 0, 3}), "d sqrt(d/g)/g");
-  EXPECT_EQ(ReducedUnits::symbol({-1, -2, 1}), "sqrt(d/g)/(rho_p d^5)");
+  EXPECT_EQ(ReducedUnits::symbol({-1, -2, 1}), "1/(rho_p d^4 sqrt(g d))");
 }
 
 // Powers of d, g and rho_p by hand, for every quantity with powers up to 3. A power, root or product is within two
