@@ -21,6 +21,7 @@ enum class Column : unsigned {
   type = 1u << 4,
   contacts = 1u << 5,  ///< the contact file of the frame: ids, force on the first id, contact point where given
   force = 1u << 6,
+  wall_contacts = 1u << 7,  ///< the file of contacts with walls that are no grains: id, force, contact point
 };
 
 /// A set of columns.
@@ -29,6 +30,7 @@ class ColumnSet {
   constexpr ColumnSet() = default;
   constexpr ColumnSet(Column c) : bits_(static_cast<unsigned>(c)) {}  // NOLINT: implicit by design
   constexpr bool has(Column c) const { return (bits_ & static_cast<unsigned>(c)) != 0; }
+  constexpr ColumnSet without(Column c) const { return ColumnSet(bits_ & ~static_cast<unsigned>(c)); }
   constexpr ColumnSet operator|(ColumnSet o) const { return ColumnSet(bits_ | o.bits_); }
   constexpr ColumnSet& operator|=(ColumnSet o) {
     bits_ |= o.bits_;
@@ -74,6 +76,16 @@ struct Contacts {
   std::size_t size() const { return id1.size(); }
 };
 
+/// Contacts of particles with walls that are no particles, such as meshes, in ascending order of id. A particle may
+/// have several.
+struct WallContacts {
+  std::vector<std::int64_t> id;
+  Columns3 force;  ///< of the wall on the particle [force]
+  Columns3 point;  ///< contact point, in any image frame [length]
+
+  std::size_t size() const { return id.size(); }
+};
+
 /// One snapshot.
 struct Frame {
   std::string file;            ///< the particle file it came from
@@ -81,7 +93,8 @@ struct Frame {
   std::optional<double> time;  ///< ITEM: TIME, or step × dt where dt is known; [time]
   Box box;
   Particles particles;
-  Contacts contacts;  ///< empty unless asked for
+  Contacts contacts;           ///< empty unless asked for
+  WallContacts wall_contacts;  ///< empty unless asked for
 };
 
 }  // namespace grainvdb

@@ -27,6 +27,17 @@ struct ContactSpec {
   std::optional<HalfStep> half_step;  ///< makes of the dumped forces those of the run; nothing leaves them
 };
 
+/// How the columns of dumps of contacts with walls that are no grains are found. Give `compute` or `columns`.
+struct WallContactSpec {
+  std::vector<std::string> files;  ///< paths, directories or globs; empty: no such contacts
+  /// Keywords of the LIGGGHTS `compute wall/gran/local` that made the dump, in any order: pos, whose first half is the
+  /// contact point; id; force, or force_normal and force_tangential; others.
+  std::vector<std::string> compute;
+  /// Or a map from id, force, normal_force, tangential_force, point and, to find contacts that come twice, mesh and
+  /// triangle to column names (one or three each).
+  std::map<std::string, std::vector<std::string>> columns;
+};
+
 /// What becomes of a frame that is malformed or lacks what is needed of it.
 enum class OnError {
   error,      ///< it is an InputError
@@ -37,6 +48,7 @@ enum class OnError {
 struct InputSpec {
   std::vector<std::string> particles;  ///< paths, directories or globs of particle dumps
   ContactSpec contacts;
+  WallContactSpec wall_contacts;
   std::optional<double> dt;             ///< time per step, for dumps without ITEM: TIME [time]
   std::optional<std::string> units;     ///< unit system, for dumps without ITEM: UNITS; must agree where both are given
   std::optional<double> density;        ///< of the grains, for dumps without mass: m = ρ 4/3 π r³ [mass/length³]
@@ -90,10 +102,12 @@ class FrameSource {
   virtual const std::vector<std::string>& particle_columns() const = 0;
   /// Names of the columns of the contact dumps; empty when there are none. Opens the first contact file.
   virtual std::vector<std::string> contact_columns() = 0;
+  /// The same of the dumps of contacts with walls.
+  virtual std::vector<std::string> wall_contact_columns() { return {}; }
   /// Every file of the input with its size in bytes, for the provenance.
   virtual std::vector<std::pair<std::string, std::uintmax_t>> files() const = 0;
 
-  /// Throws InputError when frame k lacks a wanted column or its contacts, by the index alone.
+  /// Throws InputError when frame k lacks a wanted column or wanted contacts, by the index alone.
   virtual void require(std::size_t k, ColumnSet wanted) = 0;
   /// Reads frame k of the index: id, position and the wanted columns. Throws InputError or IoError.
   virtual Frame read(std::size_t k, ColumnSet wanted) = 0;

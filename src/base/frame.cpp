@@ -11,7 +11,7 @@ std::vector<std::string> column_names(ColumnSet columns) {
       {Column::velocity, "velocity"}, {Column::angular_velocity, "angular velocity"},
       {Column::radius, "radius"},     {Column::mass, "mass"},
       {Column::type, "type"},         {Column::contacts, "contacts"},
-      {Column::force, "force"}};
+      {Column::force, "force"},       {Column::wall_contacts, "wall contacts"}};
   std::vector<std::string> result{"id", "position"};
   for (const auto& [column, name] : names)
     if (columns.has(column)) result.emplace_back(name);

@@ -9,6 +9,7 @@
 #include "read/particle_table.hpp"
 #include "read/text.hpp"
 #include "read/unsaid.hpp"
+#include "read/wall_contact_table.hpp"
 
 namespace grainvdb {
 namespace {
@@ -64,6 +65,13 @@ void leave_out(std::vector<InputFile>& files, const std::set<FileIdentity>& else
   std::erase_if(files, [&](const InputFile& file) { return !file.named && elsewhere.contains(file.identity); });
 }
 
+std::set<FileIdentity> named(const std::vector<InputFile>& files) {
+  std::set<FileIdentity> result;
+  for (const InputFile& file : files)
+    if (file.named) result.insert(file.identity);
+  return result;
+}
+
 /// Files may print times with six digits.
 bool same_time(double a, double b) {
   constexpr double printed = 2e-6;
@@ -84,16 +92,19 @@ void check_spec(const InputSpec& spec) {
   check_positive(spec, "radius", spec.radius);
   check_box(spec);
   check_contact_spec(spec);
+  check_wall_contact_spec(spec);
 }
 
 InputFiles find_files(const InputSpec& spec) {
   InputFiles files{list_files(spec.particles, stated_at(spec, "input.particles")),
-                   list_files(spec.contacts.files, stated_at(spec, "input.contacts.files"))};
-  // So that a directory of particle dumps does not make contact dumps be opened that a glob has named.
-  std::set<FileIdentity> named_contacts;
-  for (const InputFile& file : files.contacts)
-    if (file.named) named_contacts.insert(file.identity);
-  leave_out(files.particles, named_contacts);
+                   list_files(spec.contacts.files, stated_at(spec, "input.contacts.files")),
+                   list_files(spec.wall_contacts.files, stated_at(spec, "input.wall_contacts.files"))};
+  // So that a directory is not searched for what a glob has named as dumps of another kind.
+  const std::set<FileIdentity> contacts = named(files.contacts), wall_contacts = named(files.wall_contacts);
+  leave_out(files.particles, contacts);
+  leave_out(files.particles, wall_contacts);
+  leave_out(files.contacts, wall_contacts);
+  leave_out(files.wall_contacts, contacts);
   return files;
 }
 
@@ -110,7 +121,9 @@ DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
   std::set<FileIdentity> particle_files;
   for (const InputFile& file : particles_.files()) particle_files.insert(file.identity);
   leave_out(files.contacts, particle_files);
+  leave_out(files.wall_contacts, particle_files);
   contacts_.emplace(std::move(files.contacts), RowKind::contacts, spec_, counters_);
+  wall_contacts_.emplace(std::move(files.wall_contacts), RowKind::contacts, spec_, counters_);
 
   units_ = choose_units(spec, particles_.units());
   for (const FrameRecord& record : particles_.frames()) {
@@ -127,22 +140,26 @@ DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
 
 std::vector<std::pair<std::string, std::uintmax_t>> DumpDirectory::files() const {
   std::vector<std::pair<std::string, std::uintmax_t>> all;
-  for (const DumpSeries* series : {&particles_, &*contacts_})
+  for (const DumpSeries* series : {&particles_, &*contacts_, &*wall_contacts_})
     for (const InputFile& file : series->files()) all.emplace_back(file.path, file.size);
   return all;
 }
 
 std::vector<BadFrame> DumpDirectory::unreadable() const {
   std::vector<BadFrame> all = particles_.unreadable();
-  all.insert(all.end(), contacts_->unreadable().begin(), contacts_->unreadable().end());
+  for (const DumpSeries* series : {&*contacts_, &*wall_contacts_})
+    all.insert(all.end(), series->unreadable().begin(), series->unreadable().end());
   return all;
 }
 
 void DumpDirectory::require(std::size_t k, ColumnSet wanted) {
   particle_layout(particles_.header(particles_.frames().at(k)), frames_[k].file, spec_, wanted);
-  if (!wanted.has(Column::contacts)) return;
-  const FrameRecord& contacts = contacts_->frames()[find_contacts(k)];
-  contact_layout(contacts_->header(contacts), contacts_->files()[contacts.file].path, spec_);
+  const auto layout_beside = [&](const Beside& dumps, auto make_layout) {
+    const FrameRecord& record = dumps.series.frames()[find_beside(k, dumps)];
+    make_layout(dumps.series.header(record), dumps.series.files()[record.file].path, spec_);
+  };
+  if (wanted.has(Column::contacts)) layout_beside(contacts(), contact_layout);
+  if (wanted.has(Column::wall_contacts)) layout_beside(wall_contacts(), wall_contact_layout);
 }
 
 Frame DumpDirectory::read(std::size_t k, ColumnSet wanted) {
@@ -156,60 +173,74 @@ Frame DumpDirectory::read(std::size_t k, ColumnSet wanted) {
   frame.box = info.box;
   frame.particles = make_particles(layout, particles_.read_rows(layout.request), header, info.file);
   if (wanted.has(Column::contacts)) frame.contacts = read_contacts(k);
+  if (wanted.has(Column::wall_contacts)) frame.wall_contacts = read_wall_contacts(k, frame.particles.id);
   ++counters_.frames_read;
   return frame;
 }
 
-/// The frame of contacts of a step. The first call indexes the contact dumps.
-std::size_t DumpDirectory::find_contacts(std::size_t frame) {
+/// The frame of such dumps of a step. The first call indexes them.
+std::size_t DumpDirectory::find_beside(std::size_t frame, const Beside& dumps) {
   const FrameRecord& particles = particles_.frames()[frame];
   const std::int64_t step = particles.step;
-  const Location where = stated_at(spec_, "input.contacts.files");
-  if (spec_.contacts.files.empty())
+  const std::string key = dumps.section + ".files";
+  const Location where = stated_at(spec_, key);
+  if (dumps.patterns.empty())
     throw InputError({where,
-                      "contacts are needed but no contact dumps are given",
+                      dumps.noun + "s are needed but no " + dumps.noun + " dumps are given",
                       {},
-                      "input.contacts.files",
-                      "Name the contact dumps in the pipeline file"});
-  contacts_->build_index();
-  if (contacts_->units() && find_unit_system(units_.name) != nullptr && contacts_->units()->text != units_.name)
-    throw InputError({contacts_->units()->where,
+                      key,
+                      "Name the " + dumps.noun + " dumps in the pipeline file"});
+  DumpSeries& series = dumps.series;
+  series.build_index();
+  if (series.units() && find_unit_system(units_.name) != nullptr && series.units()->text != units_.name)
+    throw InputError({series.units()->where,
                       "the units are not those of the particle dumps",
-                      in_quotes(contacts_->units()->text),
+                      in_quotes(series.units()->text),
                       units_.name,
                       {}});
-  const std::optional<std::size_t> k = contacts_->find(step);
+  const std::optional<std::size_t> k = series.find(step);
   if (!k)
-    throw InputError({where, "no contact dump has timestep " + std::to_string(step),
-                      std::to_string(contacts_->frames().size()) + " other timesteps in the " +
-                          std::to_string(contacts_->files().size()) + " contact files of " +
-                          listed(spec_.contacts.files),
-                      "one contact frame for every particle frame that is used",
-                      "Choose the frames that have contacts, or fields that need none"});
-  const FrameRecord& contacts = contacts_->frames()[*k];
-  if (particles.time && contacts.time && !same_time(*particles.time, *contacts.time))
-    throw InputError({{contacts_->files()[contacts.file].path, contacts.start.line},
-                      "the contacts of timestep " + std::to_string(step) + " are of another time than its particles",
-                      std::to_string(*contacts.time),
-                      std::to_string(*particles.time),
-                      "Particles and contacts have to be written at the same times"});
+    throw InputError({where, "no " + dumps.noun + " dump has timestep " + std::to_string(step),
+                      std::to_string(series.frames().size()) + " other timesteps in the " +
+                          std::to_string(series.files().size()) + ' ' + dumps.noun + " files of " +
+                          listed(dumps.patterns),
+                      "one " + dumps.noun + " frame for every particle frame that is used",
+                      "Choose the frames that have " + dumps.noun + "s, or fields that need none"});
+  const FrameRecord& found = series.frames()[*k];
+  if (particles.time && found.time && !same_time(*particles.time, *found.time))
+    throw InputError(
+        {{series.files()[found.file].path, found.start.line},
+         "the " + dumps.noun + "s of timestep " + std::to_string(step) + " are of another time than its particles",
+         std::to_string(*found.time),
+         std::to_string(*particles.time),
+         "Particles and contacts have to be written at the same times"});
   return *k;
 }
 
 Contacts DumpDirectory::read_contacts(std::size_t frame) {
-  const std::size_t k = find_contacts(frame);
+  const std::size_t k = find_beside(frame, contacts());
   const FrameHeader& header = contacts_->go_to(k);
   const std::string& file = contacts_->files()[contacts_->frames()[k].file].path;
   const ContactLayout layout = contact_layout(header, file, spec_);
   return make_contacts(layout, contacts_->read_rows(layout.request), header, file);
 }
 
+WallContacts DumpDirectory::read_wall_contacts(std::size_t frame, const std::vector<std::int64_t>& ids) {
+  const std::size_t k = find_beside(frame, wall_contacts());
+  const FrameHeader& header = wall_contacts_->go_to(k);
+  const std::string& file = wall_contacts_->files()[wall_contacts_->frames()[k].file].path;
+  const WallContactLayout layout = wall_contact_layout(header, file, spec_);
+  return make_wall_contacts(layout, wall_contacts_->read_rows(layout.request), header, file, ids);
+}
+
 void DumpDirectory::keep_frames_with_contacts() {
-  if (spec_.contacts.files.empty()) return;
-  contacts_->build_index();
-  const auto first_without = std::find_if(frames_.begin(), frames_.end(),
-                                          [&](const FrameInfo& frame) { return !contacts_->find(frame.step); });
-  frames_.erase(first_without, frames_.end());
+  for (const Beside& dumps : {contacts(), wall_contacts()}) {
+    if (dumps.patterns.empty()) continue;
+    dumps.series.build_index();
+    const auto first_without = std::find_if(frames_.begin(), frames_.end(),
+                                            [&](const FrameInfo& frame) { return !dumps.series.find(frame.step); });
+    frames_.erase(first_without, frames_.end());
+  }
 }
 
 void DumpDirectory::keep_frames_up_to(std::int64_t step) {
@@ -218,12 +249,13 @@ void DumpDirectory::keep_frames_up_to(std::int64_t step) {
 
 std::vector<FileIdentity> DumpDirectory::whole_files() const {
   std::vector<FileIdentity> all = particles_.whole_files();
-  all.insert(all.end(), contacts_->whole_files().begin(), contacts_->whole_files().end());
+  for (const DumpSeries* series : {&*contacts_, &*wall_contacts_})
+    all.insert(all.end(), series->whole_files().begin(), series->whole_files().end());
   return all;
 }
 
 void DumpDirectory::require_no_fault() const {
-  for (const DumpSeries* series : {&particles_, &*contacts_})
+  for (const DumpSeries* series : {&particles_, &*contacts_, &*wall_contacts_})
     if (series->fault()) std::rethrow_exception(series->fault());
 }
 

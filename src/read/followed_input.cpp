@@ -53,6 +53,7 @@ std::unique_ptr<FrameSource> FollowedInput::look(std::optional<std::int64_t> las
     InputFiles files = find_files(seen_->spec);
     seen_->judge(files.particles);
     seen_->judge(files.contacts);
+    seen_->judge(files.wall_contacts);
     dumps = std::make_unique<DumpDirectory>(seen_->spec, std::move(files));
     dumps->keep_frames_with_contacts();
     if (last_step) dumps->keep_frames_up_to(*last_step);
