@@ -35,10 +35,10 @@ struct LineIntegral {
 
 /// Which of a frame's half branches a moment of contacts sums over.
 enum class BranchKind {
-  all,            ///< both of every contact
+  all,            ///< both of every contact of two grains, one of every contact with a wall that is no grain
   outside_walls,  ///< those that do not lie in a wall grain
-  at_walls        ///< one for each contact of material with a wall grain: at the contact point, with the force on the
-                  ///< material and an arm of length zero
+  at_walls  ///< one for each contact of material with a wall grain or another wall: at the contact point, with the
+            ///< force on the material and an arm of length zero
 };
 
 /// The channels of Moment::Kind::second_moments at a voxel x, with r = x_α - x the place of a particle (or of the image

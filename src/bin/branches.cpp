@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -20,7 +21,7 @@ namespace {
 constexpr double longest_arm = 2;  // radii
 
 std::string pair_name(const Contacts& contacts, std::size_t k) {
-  return std::to_string(contacts.id1[k]) + " and " + std::to_string(contacts.id2[k]);
+  return "particles " + std::to_string(contacts.id1[k]) + " and " + std::to_string(contacts.id2[k]);
 }
 
 [[noreturn]] void fail(const Frame& frame, const std::string& what, const std::string& found,
@@ -34,13 +35,13 @@ std::string pair_name(const Contacts& contacts, std::size_t k) {
   throw InputError(problem);
 }
 
-std::size_t particle_of(const Frame& frame, const ParticleRows& rows, std::size_t contact, std::int64_t id) {
+/// `contact` says which one it is.
+std::size_t particle_of(const Frame& frame, const ParticleRows& rows, std::int64_t id,
+                        const std::function<std::string()>& contact) {
   const std::size_t row = rows.find(id);
   if (row == ParticleRows::absent)
-    fail(frame,
-         "the contact between particles " + pair_name(frame.contacts, contact) +
-             " names a particle that the frame lacks",
-         "id " + std::to_string(id), "an id of the particle dump of this step",
+    fail(frame, "the contact " + contact() + " names a particle that the frame lacks", "id " + std::to_string(id),
+         "an id of the particle dump of this step",
          "The particle dump must hold every particle that has contacts, wall grains included; leave particles out with "
          "the pipeline's selection instead");
   return row;
@@ -52,7 +53,9 @@ Vec3 difference(const Box& box, const Columns3& a, std::size_t i, const Columns3
   return d;
 }
 
-void check_arm(const Frame& frame, std::size_t contact, std::size_t particle, const Vec3& arm) {
+/// `touching` says which particle or particles meet at the contact point.
+void check_arm(const Frame& frame, std::size_t particle, const Vec3& arm,
+               const std::function<std::string()>& touching) {
   if (frame.particles.radius.empty()) return;
   const double length = std::sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
   const double limit = longest_arm * frame.particles.radius[particle];
@@ -60,16 +63,18 @@ void check_arm(const Frame& frame, std::size_t contact, std::size_t particle, co
   std::ostringstream found, expected;
   found << "a distance of " << length << " from the centre of particle " << frame.particles.id[particle];
   expected << "at most " << limit << ", two radii";
-  fail(frame, "the contact point of particles " + pair_name(frame.contacts, contact) + " lies far outside a particle",
-       found.str(), expected.str(), "Check that the contact columns are named rightly and belong to the same step");
+  fail(frame, "the contact point of " + touching() + " lies far outside a particle", found.str(), expected.str(),
+       "Check that the contact columns are named rightly and belong to the same step");
 }
 
 /// Writes the two half branches of contact k to rows 2k and 2k+1.
 void add_contact(const Frame& frame, const ParticleRows& rows, std::size_t k, HalfBranches& to) {
   const Contacts& contacts = frame.contacts;
   const Particles& particles = frame.particles;
-  const std::size_t i = particle_of(frame, rows, k, contacts.id1[k]);
-  const std::size_t j = particle_of(frame, rows, k, contacts.id2[k]);
+  const auto pair = [&] { return pair_name(contacts, k); };
+  const auto between = [&] { return "between " + pair(); };
+  const std::size_t i = particle_of(frame, rows, contacts.id1[k], between);
+  const std::size_t j = particle_of(frame, rows, contacts.id2[k], between);
   if (i == j)
     fail(frame, "a contact joins a particle with itself", "id " + std::to_string(contacts.id1[k]), "two different ids",
          {});
@@ -87,7 +92,7 @@ void add_contact(const Frame& frame, const ParticleRows& rows, std::size_t k, Ha
     }
   }
   const auto write = [&](std::size_t row, std::size_t particle, const Vec3& arm, double sign) {
-    check_arm(frame, k, particle, arm);
+    check_arm(frame, particle, arm, pair);
     for (std::size_t a = 0; a < 3; ++a) {
       to.start[a][row] = particles.position[a][particle];
       to.arm[a][row] = arm[a];
@@ -124,6 +129,26 @@ HalfBranches half_branches(const Frame& frame) {
   return branches;
 }
 
+HalfBranches wall_half_branches(const Frame& frame) {
+  const WallContacts& contacts = frame.wall_contacts;
+  const ParticleRows rows(frame.particles.id);
+  HalfBranches branches;
+  branches.force = contacts.force;
+  for (Columns3* columns : {&branches.start, &branches.arm})
+    for (auto& column : *columns) column.resize(contacts.size());
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const auto particle_name = [&] { return "particle " + std::to_string(contacts.id[k]); };
+    const std::size_t i = particle_of(frame, rows, contacts.id[k], [&] { return "of a wall with " + particle_name(); });
+    const Vec3 arm = difference(frame.box, frame.particles.position, i, contacts.point, k);
+    check_arm(frame, i, arm, [&] { return "a wall and " + particle_name(); });
+    for (std::size_t a = 0; a < 3; ++a) {
+      branches.start[a][k] = frame.particles.position[a][i];
+      branches.arm[a][k] = arm[a];
+    }
+  }
+  return branches;
+}
+
 std::vector<std::size_t> branch_particles(const Frame& frame) {
   const Contacts& contacts = frame.contacts;
   const ParticleRows rows(frame.particles.id);
@@ -132,6 +157,13 @@ std::vector<std::size_t> branch_particles(const Frame& frame) {
     particle[2 * k] = rows.find(contacts.id1[k]);
     particle[2 * k + 1] = rows.find(contacts.id2[k]);
   });
+  return particle;
+}
+
+std::vector<std::size_t> wall_branch_particles(const Frame& frame) {
+  const ParticleRows rows(frame.particles.id);
+  std::vector<std::size_t> particle;
+  for (const std::int64_t id : frame.wall_contacts.id) particle.push_back(rows.find(id));
   return particle;
 }
 

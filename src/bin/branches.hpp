@@ -16,7 +16,14 @@ namespace grainvdb {
 /// particle with itself, has an arm that is too long, or has neither a point nor radii.
 HalfBranches half_branches(const Frame& frame);
 
+/// One half branch per wall contact, in their order: from the particle's centre to the contact point, with the force of
+/// the wall. Its partner, of length zero in the wall, carries no stress and is left out. Throws InputError as
+/// half_branches does.
+HalfBranches wall_half_branches(const Frame& frame);
+
 /// The row of the particle in which each half branch lies, of a frame that half_branches accepts.
 std::vector<std::size_t> branch_particles(const Frame& frame);
+/// The same for wall_half_branches.
+std::vector<std::size_t> wall_branch_particles(const Frame& frame);
 
 }  // namespace grainvdb

@@ -123,6 +123,8 @@ void print_estimates(const InfoOptions& options) {
   Pipeline pipeline = load_pipeline(options.pipeline, {});
   pipeline.input.particles = options.input.particles;
   if (!options.input.contacts.files.empty()) pipeline.input.contacts.files = options.input.contacts.files;
+  if (!options.input.wall_contacts.files.empty())
+    pipeline.input.wall_contacts.files = options.input.wall_contacts.files;
   if (options.input.dt) pipeline.input.dt = options.input.dt;
   if (options.input.periodic) pipeline.input.periodic = options.input.periodic;
   for (const Pipeline& p : at_scales(pipeline)) {
@@ -138,6 +140,8 @@ void info(const InfoOptions& options) {
   print_columns("columns", source->particle_columns());
   const std::vector<std::string> contact_columns = source->contact_columns();
   if (!contact_columns.empty()) print_columns("contact columns", contact_columns);
+  const std::vector<std::string> wall_contact_columns = source->wall_contact_columns();
+  if (!wall_contact_columns.empty()) print_columns("wall contact columns", wall_contact_columns);
   std::cout << "units: " << source->units().name << '\n';
   const Survey last = survey(*source, source->frames().size() - 1);
   print_grains(last);
@@ -158,6 +162,10 @@ void add_info(CLI::App& app) {
       ->required()
       ->type_name("DUMPS");
   command->add_option("--contacts", options->input.contacts.files, "Contact dumps: files, folders or patterns")
+      ->type_name("DUMPS");
+  command
+      ->add_option("--wall-contacts", options->input.wall_contacts.files,
+                   "Dumps of contacts with walls that are no grains: files, folders or patterns")
       ->type_name("DUMPS");
   command->add_option("--dt", options->input.dt, "Time per step, for dumps without times")
       ->type_name("TIME")

@@ -6,7 +6,9 @@ namespace grainvdb::cli {
 
 InputSpec needed_input(const Pipeline& pipeline, const Plan& plan) {
   InputSpec spec = pipeline.input;
-  if (!columns_read(plan, pipeline).has(Column::contacts)) spec.contacts = {};
+  const ColumnSet columns = columns_read(plan, pipeline);
+  if (!columns.has(Column::contacts)) spec.contacts = {};
+  if (!columns.has(Column::wall_contacts)) spec.wall_contacts = {};
   return spec;
 }
 

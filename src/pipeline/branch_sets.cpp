@@ -13,8 +13,8 @@ namespace {
 constexpr std::uint8_t material_grain = 1;
 constexpr std::uint8_t wall_grain = 2;
 
-/// What the particle of each half branch is.
-std::vector<std::uint8_t> roles_of_branches(const Frame& frame, const Pipeline& pipeline) {
+/// What each particle is.
+std::vector<std::uint8_t> roles_of_particles(const Frame& frame, const Pipeline& pipeline) {
   const Particles& p = frame.particles;
   std::vector<std::uint8_t> role(p.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -24,8 +24,13 @@ std::vector<std::uint8_t> roles_of_branches(const Frame& frame, const Pipeline& 
       role[i] = material_grain;
     }
   }
+  return role;
+}
+
+/// What the particle of each half branch is.
+std::vector<std::uint8_t> roles_in(const std::vector<std::uint8_t>& role, const std::vector<std::size_t>& particle) {
   std::vector<std::uint8_t> of_branch;
-  for (const std::size_t row : branch_particles(frame)) of_branch.push_back(role[row]);
+  for (const std::size_t row : particle) of_branch.push_back(role[row]);
   return of_branch;
 }
 
@@ -46,17 +51,49 @@ HalfBranches outside_walls(const HalfBranches& all, const std::vector<std::uint8
   return kept;
 }
 
+void move_to_contact_point(HalfBranches& branches, std::size_t n) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    branches.start[a][n] -= branches.arm[a][n];
+    branches.arm[a][n] = 0;
+  }
+}
+
 HalfBranches at_walls(const HalfBranches& all, const std::vector<std::uint8_t>& role) {
   HalfBranches contacts;
   for (std::size_t n = 0; n < all.size(); ++n) {
     if (role[n] != material_grain || role[n ^ 1U] != wall_grain) continue;
     append(all, n, contacts);
-    for (std::size_t a = 0; a < 3; ++a) {
-      contacts.start[a].back() -= all.arm[a][n];
-      contacts.arm[a].back() = 0;
-    }
+    move_to_contact_point(contacts, contacts.size() - 1);
   }
   return contacts;
+}
+
+void add_contacts_of_grains(const Frame& frame, const std::vector<std::uint8_t>& role, BranchSets& sets) {
+  HalfBranches all = half_branches(frame);
+  if (!role.empty()) {
+    const std::vector<std::uint8_t> of_branch = roles_in(role, branch_particles(frame));
+    if (sets.contains(BranchKind::outside_walls)) sets[BranchKind::outside_walls] = outside_walls(all, of_branch);
+    if (sets.contains(BranchKind::at_walls)) sets[BranchKind::at_walls] = at_walls(all, of_branch);
+  }
+  if (sets.contains(BranchKind::all)) sets[BranchKind::all] = std::move(all);
+}
+
+/// Behind those of contacts that have both half branches, so that these stay together.
+void add_contacts_with_walls(const Frame& frame, const std::vector<std::uint8_t>& role, BranchSets& sets) {
+  const HalfBranches halves = wall_half_branches(frame);
+  if (const auto all = sets.find(BranchKind::all); all != sets.end())
+    for (std::size_t n = 0; n < halves.size(); ++n) append(halves, n, all->second);
+  if (role.empty()) return;
+  const std::vector<std::uint8_t> of_branch = roles_in(role, wall_branch_particles(frame));
+  if (const auto outside = sets.find(BranchKind::outside_walls); outside != sets.end())
+    for (std::size_t n = 0; n < halves.size(); ++n)
+      if (of_branch[n] != wall_grain) append(halves, n, outside->second);
+  if (const auto at = sets.find(BranchKind::at_walls); at != sets.end())
+    for (std::size_t n = 0; n < halves.size(); ++n) {
+      if (of_branch[n] != material_grain) continue;
+      append(halves, n, at->second);
+      move_to_contact_point(at->second, at->second.size() - 1);
+    }
 }
 
 bool contains(const std::vector<int>& types, int type) {
@@ -85,14 +122,13 @@ bool is_wall_grain(const WallSpec& walls, const Selection& selection, const Box&
 BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted) {
   BranchSets sets;
   for (const BranchKind set : wanted) sets[set];
-  if (frame.contacts.size() == 0) return sets;
-  HalfBranches all = half_branches(frame);
-  if (wanted.contains(BranchKind::outside_walls) || wanted.contains(BranchKind::at_walls)) {
-    const std::vector<std::uint8_t> role = roles_of_branches(frame, pipeline);
-    if (wanted.contains(BranchKind::outside_walls)) sets[BranchKind::outside_walls] = outside_walls(all, role);
-    if (wanted.contains(BranchKind::at_walls)) sets[BranchKind::at_walls] = at_walls(all, role);
-  }
-  if (wanted.contains(BranchKind::all)) sets[BranchKind::all] = std::move(all);
+  const bool contacts = frame.contacts.size() > 0, wall_contacts = frame.wall_contacts.size() > 0;
+  if (!contacts && !wall_contacts) return sets;
+  std::vector<std::uint8_t> role;
+  if (wanted.contains(BranchKind::outside_walls) || wanted.contains(BranchKind::at_walls))
+    role = roles_of_particles(frame, pipeline);
+  if (contacts) add_contacts_of_grains(frame, role, sets);
+  if (wall_contacts) add_contacts_with_walls(frame, role, sets);
   return sets;
 }
 

@@ -19,8 +19,8 @@ bool is_selected(const Selection& selection, const Box& box, const Particles& pa
 bool is_wall_grain(const WallSpec& walls, const Selection& selection, const Box& box, const Particles& particles,
                    std::size_t i);
 
-/// The wanted sets of the half branches of a frame's contacts. Throws InputError as half_branches does, whatever is
-/// wanted.
+/// The wanted sets of the half branches of a frame's contacts, those with walls that are no grains behind the others.
+/// Throws InputError as half_branches does, whatever is wanted.
 BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted);
 
 }  // namespace grainvdb

@@ -37,12 +37,14 @@ void check_plan(const Pipeline& pipeline, const Plan& plan) {
 }
 
 void check_wall_grains(const Pipeline& pipeline, const Plan& plan) {
-  if (!tells_walls(all_branch_kinds(plan)) || !pipeline.walls.types.empty() || !pipeline.select.empty()) return;
+  if (!tells_walls(all_branch_kinds(plan)) || !pipeline.walls.types.empty() || !pipeline.select.empty() ||
+      !pipeline.input.wall_contacts.files.empty())
+    return;
   throw ConfigError({pipeline.location("output.fields"),
                      "the wanted fields tell wall grains from material, and nothing says which are which",
                      "neither walls.types nor select",
                      "walls.types: the types of the wall grains; or select, which leaves them out",
-                     {}});
+                     "Of walls that are no grains, name the contacts: input.wall_contacts"});
 }
 
 void check_periodic_box(const Pipeline& pipeline, const FrameInfo& first, const FrameInfo& frame) {

@@ -20,6 +20,12 @@ constexpr ColumnSet every_column() {
          Column::contacts;
 }
 
+/// What there is to read, contacts with walls only where the input has them.
+std::vector<std::string> columns_there(const Pipeline& pipeline) {
+  const bool walls = !pipeline.input.wall_contacts.files.empty();
+  return column_names(walls ? every_column() | Column::wall_contacts : every_column());
+}
+
 std::string joined(const std::vector<std::string>& names, const char* none) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
@@ -89,7 +95,7 @@ std::string describe_sweep(const Sweep& sweep) {
 std::vector<std::string> columns_not_read(const Plan& plan, const Pipeline& pipeline) {
   const std::vector<std::string> read = column_names(columns_read(plan, pipeline));
   std::vector<std::string> rest;
-  for (const std::string& name : column_names(every_column()))
+  for (const std::string& name : columns_there(pipeline))
     if (std::find(read.begin(), read.end(), name) == read.end()) rest.push_back(name);
   return rest;
 }

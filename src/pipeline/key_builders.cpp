@@ -1,8 +1,23 @@
 #include "pipeline/key_builders.hpp"
 
+#include <filesystem>
 #include <utility>
+#include <variant>
 
 namespace grainvdb {
+namespace {
+
+// The folder of the pipeline file as the beginning of a pattern: its own name has no wildcards.
+std::string without_wildcards(const std::string& folder) {
+  std::string escaped;
+  for (char c : folder) {
+    if (c == '*' || c == '?' || c == '[' || c == '\\') escaped += '\\';
+    escaped += c;
+  }
+  return escaped;
+}
+
+}  // namespace
 
 KeyInfo number_key(std::string section, std::string name, std::string unit, std::string help, ApplyValue apply) {
   KeyInfo key{std::move(section), std::move(name), ValueType::number, std::move(help), std::move(unit)};
@@ -19,6 +34,17 @@ KeyInfo texts_key(std::string section, std::string name, std::string help, std::
   key.choices = std::move(choices);
   key.apply = std::move(apply);
   return key;
+}
+
+std::vector<std::string> input_paths(const Pipeline& pipeline, const ConfigValue& value) {
+  const std::filesystem::path folder = std::filesystem::path(pipeline.file).parent_path();
+  const std::filesystem::path folder_of_pattern = without_wildcards(folder.string());
+  std::vector<std::string> result;
+  for (const std::string& path : std::get<std::vector<std::string>>(value)) {
+    const bool is_pattern = path.find_first_of("*?[") != std::string::npos;
+    result.push_back(((is_pattern ? folder_of_pattern : folder) / path).string());
+  }
+  return result;
 }
 
 KeyInfo vector_key(std::string section, std::string name, std::string help, ApplyValue apply) {

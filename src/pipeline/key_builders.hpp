@@ -21,6 +21,9 @@ KeyInfo number_key(std::string section, std::string name, std::string unit, std:
 KeyInfo texts_key(std::string section, std::string name, std::string help, std::vector<std::string> choices,
                   ApplyValue apply);
 
+/// The value of a key of paths and patterns, which are relative to the folder of the pipeline file.
+std::vector<std::string> input_paths(const Pipeline& pipeline, const ConfigValue& value);
+
 /// Three lengths.
 KeyInfo vector_key(std::string section, std::string name, std::string help, ApplyValue apply);
 

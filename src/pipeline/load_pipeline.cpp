@@ -52,6 +52,27 @@ void check_lattice(const Pipeline& p) {
   require("kernel", p.cutoff, "kernel.cutoff");
 }
 
+/// What `section` says of the columns of contact dumps.
+void check_columns_of(const Pipeline& p, const std::string& section, const std::string& noun,
+                      const std::vector<std::string>& compute,
+                      const std::map<std::string, std::vector<std::string>>& columns) {
+  if (!compute.empty() && !columns.empty())
+    throw ConfigError({p.location(section),
+                       "the columns of the " + noun + " dumps are described twice",
+                       {},
+                       "either " + section + ".compute or " + section + ".columns",
+                       {}});
+  const auto has = [&](const char* name) { return columns.contains(name); };
+  const bool parts = has("normal_force") && has("tangential_force"),
+             one_part = has("normal_force") || has("tangential_force");
+  if (!columns.empty() && (has("force") ? one_part : !parts))
+    throw ConfigError({p.location(section + ".columns"),
+                       "the contact force must be given in one way",
+                       {},
+                       "either force (the total), or both normal_force and tangential_force",
+                       {}});
+}
+
 // What no single key can tell.
 void check_together(const Pipeline& p, const Schema& schema) {
   check_output(p, schema);
@@ -64,22 +85,9 @@ void check_together(const Pipeline& p, const Schema& schema) {
   check_trace(p);
   check_measure(p);
   check_lattice(p);
-  const auto& contacts = p.input.contacts;
-  if (!contacts.compute.empty() && !contacts.columns.empty())
-    throw ConfigError({p.location("input.contacts"),
-                       "the columns of the contact dumps are described twice",
-                       {},
-                       "either input.contacts.compute or input.contacts.columns",
-                       {}});
-  const auto has = [&](const char* name) { return contacts.columns.contains(name); };
-  const bool parts = has("normal_force") && has("tangential_force"),
-             one_part = has("normal_force") || has("tangential_force");
-  if (!contacts.columns.empty() && (has("force") ? one_part : !parts))
-    throw ConfigError({p.location("input.contacts.columns"),
-                       "the contact force must be given in one way",
-                       {},
-                       "either force (the total), or both normal_force and tangential_force",
-                       {}});
+  check_columns_of(p, "input.contacts", "contact", p.input.contacts.compute, p.input.contacts.columns);
+  check_columns_of(p, "input.wall_contacts", "wall contact", p.input.wall_contacts.compute,
+                   p.input.wall_contacts.columns);
   check_half_step(p);
   if (p.window_step > 0 && p.window == 0)
     throw ConfigError({p.location("average.step"), "average.step has no meaning for one mean of all frames",

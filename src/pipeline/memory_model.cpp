@@ -33,16 +33,20 @@ constexpr double bucket_entry = 4 + 3 * 8 + 3 * 4;  // point, index, local (Buck
 constexpr double half_branch = 9 * 8;               // start, arm, force
 constexpr double branch_plan = 8 + 4;               // how it is integrated, and which one a piece is of
 
+bool has_wall_contacts(const Pipeline& pipeline) {
+  return !pipeline.input.wall_contacts.files.empty();
+}
+
 bool has_contact_point(const ContactSpec& spec) {
   return spec.columns.contains("point") ||
          std::find(spec.compute.begin(), spec.compute.end(), "contactPoint") != spec.compute.end();
 }
 
 /// Pieces of a contact in the buckets. Its halves make one where its point is exact, and not just as good as a dump's
-/// six digits.
+/// six digits; that of a contact with a wall, which counts as half a contact, is a piece of its own.
 double pieces(const Pipeline& pipeline, const SplatGroup& group) {
   const bool joins = group.moments[0]->line_integral == LineIntegral::adaptive();
-  return has_contact_point(pipeline.input.contacts) || !joins ? 2 : 1;
+  return has_contact_point(pipeline.input.contacts) || !joins || has_wall_contacts(pipeline) ? 2 : 1;
 }
 
 constexpr double force_bytes = 3 * 8;
@@ -58,9 +62,10 @@ double column_bytes(ColumnSet columns) {
   return bytes;
 }
 
-/// Ids, force and, where dumps have it, the contact point.
+/// Ids, force and, where dumps have it, the contact point, as those of walls do.
 double contact_bytes(const Pipeline& pipeline) {
-  return 2 * 8 + 3 * 8 + (has_contact_point(pipeline.input.contacts) ? 3 * 8 : 0);
+  const bool points = has_contact_point(pipeline.input.contacts) || has_wall_contacts(pipeline);
+  return 2 * 8 + 3 * 8 + (points ? 3 * 8 : 0);
 }
 
 void take_larger(double& a, double b) {
@@ -90,7 +95,7 @@ void add_sweep(const Plan& plan, const Pipeline& pipeline, std::size_t sweep, Me
     for (const MomentPtr& m : pass.voxelwise)
       if (groups.kept.contains(m->name)) kept += 8.0 * m->channels;
   }
-  if (columns.has(Column::contacts)) {
+  if (columns.has(Column::contacts) || columns.has(Column::wall_contacts)) {
     contact += 2 * half_branch;
     take_larger(model.per_contact_read, contact_bytes(pipeline));
   }

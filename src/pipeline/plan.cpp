@@ -259,6 +259,16 @@ std::vector<MomentPtr> block_sums(const Plan& plan, const StageOrder& order) {
   return sums;
 }
 
+/// Sums over half branches take those of contacts with walls in. Where these are the only walls, sums at walls need no
+/// others.
+void need_wall_contacts(const Pipeline& pipeline, Sweep& sweep) {
+  if (sweep.branch_kinds.empty()) return;
+  sweep.columns |= Column::wall_contacts;
+  const bool wall_grains = !pipeline.walls.types.empty() || !pipeline.select.empty();
+  if (!wall_grains && sweep.branch_kinds == std::set{BranchKind::at_walls})
+    sweep.columns = sweep.columns.without(Column::contacts);
+}
+
 }  // namespace
 
 Halo merged(const Halo& a, const Halo& b) {
@@ -313,6 +323,8 @@ Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
   for (Sweep& sweep : plan.sweeps)
     if (!pipeline.select.types.empty() || (tells_walls(sweep.branch_kinds) && !pipeline.walls.types.empty()))
       sweep.columns |= Column::type;
+  if (!pipeline.input.wall_contacts.files.empty())
+    for (Sweep& sweep : plan.sweeps) need_wall_contacts(pipeline, sweep);
   if (const auto& half_step = pipeline.input.contacts.half_step)
     for (Sweep& sweep : plan.sweeps)
       if (sweep.columns.has(Column::contacts)) sweep.columns |= half_step_columns(*half_step);

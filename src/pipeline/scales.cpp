@@ -23,6 +23,9 @@ class SharedSource final : public FrameSource {
   std::vector<std::string> contact_columns() override {
     return frames_.with_source([](FrameSource& source) { return source.contact_columns(); });
   }
+  std::vector<std::string> wall_contact_columns() override {
+    return frames_.with_source([](FrameSource& source) { return source.wall_contact_columns(); });
+  }
   std::vector<std::pair<std::string, std::uintmax_t>> files() const override {
     return frames_.with_source([](FrameSource& source) { return source.files(); });
   }

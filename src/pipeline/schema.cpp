@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <locale>
 #include <sstream>
 #include <utility>
@@ -10,6 +9,7 @@
 #include "grainvdb/field_sink.hpp"
 #include "grainvdb/units.hpp"
 #include "pipeline/average_keys.hpp"
+#include "pipeline/contact_keys.hpp"
 #include "pipeline/frame_range.hpp"
 #include "pipeline/half_step_keys.hpp"
 #include "pipeline/key_builders.hpp"
@@ -24,28 +24,6 @@
 
 namespace grainvdb {
 namespace {
-
-// The folder of the pipeline file as the beginning of a pattern: its own name has no wildcards.
-std::string without_wildcards(const std::string& folder) {
-  std::string escaped;
-  for (char c : folder) {
-    if (c == '*' || c == '?' || c == '[' || c == '\\') escaped += '\\';
-    escaped += c;
-  }
-  return escaped;
-}
-
-// Paths and patterns are relative to the folder of the pipeline file.
-std::vector<std::string> input_paths(const Pipeline& pipeline, const ConfigValue& value) {
-  const std::filesystem::path folder = std::filesystem::path(pipeline.file).parent_path();
-  const std::filesystem::path folder_of_pattern = without_wildcards(folder.string());
-  std::vector<std::string> result;
-  for (const std::string& path : std::get<std::vector<std::string>>(value)) {
-    const bool is_pattern = path.find_first_of("*?[") != std::string::npos;
-    result.push_back(((is_pattern ? folder_of_pattern : folder) / path).string());
-  }
-  return result;
-}
 
 void add_input(Schema& schema) {
   schema.sections.push_back({"input", "What to read.", true});
@@ -76,37 +54,6 @@ void add_input(Schema& schema) {
     p.input.on_error = std::get<std::string>(v) == "error" ? OnError::error : OnError::skip_frame;
   };
   schema.keys.push_back(on_error);
-}
-
-void add_contacts(Schema& schema) {
-  schema.sections.push_back({"input.contacts",
-                             "Contact dumps, for the contact stress. Give compute or columns, or neither for columns "
-                             "named id1 id2 fx fy fz."});
-  auto files = texts_key("input.contacts", "files", "Contact dumps, as input.particles.", {},
-                         [](Pipeline& p, const ConfigValue& v) { p.input.contacts.files = input_paths(p, v); });
-  files.required = true;
-  schema.keys.push_back(files);
-  schema.keys.push_back(texts_key(
-      "input.contacts", "compute", "Keywords of the LIGGGHTS compute pair/gran/local that made the dump, in any order.",
-      {"pos", "vel", "id", "force", "force_normal", "force_tangential", "torque", "torque_normal", "torque_tangential",
-       "history", "contactArea", "delta", "heatFlux", "contactPoint", "ms_id", "verbose"},
-      [](Pipeline& p, const ConfigValue& v) { p.input.contacts.compute = std::get<std::vector<std::string>>(v); }));
-
-  schema.sections.push_back({"input.contacts.columns", "Names of the columns, for dumps of other computes."});
-  const auto column = [&](const char* name, std::size_t count, bool required, const char* help) {
-    auto key = texts_key("input.contacts.columns", name, help, {}, [name](Pipeline& p, const ConfigValue& v) {
-      p.input.contacts.columns[name] = std::get<std::vector<std::string>>(v);
-    });
-    key.fewest = key.most = count;
-    key.required = required;
-    schema.keys.push_back(key);
-  };
-  column("id1", 1, true, "Id of the first particle, on which the force acts.");
-  column("id2", 1, true, "Id of the second particle.");
-  column("force", 3, false, "Total contact force on id1.");
-  column("normal_force", 3, false, "Normal part of the force on id1; with tangential_force in place of force.");
-  column("tangential_force", 3, false, "Tangential part of the force on id1.");
-  column("point", 3, false, "Contact point; without it, the radius-weighted point between the centres.");
 }
 
 void add_selection(Schema& schema) {
@@ -316,7 +263,7 @@ Schema make_schema(const StageRegistry& registry) {
   schema.keys.push_back(version);
   add_input(schema);
   add_unsaid_keys(schema);
-  add_contacts(schema);
+  add_contact_keys(schema);
   add_half_step_keys(schema);
   add_selection(schema);
   add_walls(schema);

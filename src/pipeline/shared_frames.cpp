@@ -32,7 +32,7 @@ Frame SharedFrames::read(std::size_t user, std::size_t k, ColumnSet wanted) {
     }
     lock.lock();
     most_particles_ = std::max(most_particles_, content.particles.size());
-    most_contacts_ = std::max(most_contacts_, content.contacts.size());
+    most_contacts_ = std::max(most_contacts_, content.contacts.size() + content.wall_contacts.size());
     slot.content = std::move(content);
     slot.fault = fault;
     slot.ready = true;

@@ -18,6 +18,7 @@ Frame MemorySource::read(std::size_t k, ColumnSet wanted) {
   if (!wanted.has(Column::mass)) f.particles.mass = {};
   if (!wanted.has(Column::type)) f.particles.type = {};
   if (!wanted.has(Column::contacts)) f.contacts = {};
+  if (!wanted.has(Column::wall_contacts)) f.wall_contacts = {};
   if (!wanted.has(Column::force)) f.particles.force = {};
   for (const std::string& name : column_names(wanted)) counters_.columns_parsed.insert(name);
   ++counters_.frames_read;

@@ -10,7 +10,8 @@
 namespace grainvdb::testing {
 
 /// Serves copies of the given frames with the wanted columns only, so that a computation that did not ask for a column
-/// finds it empty. Contacts are handed out where Column::contacts is wanted.
+/// finds it empty. Contacts are handed out where Column::contacts is wanted, those with walls where
+/// Column::wall_contacts is.
 class MemorySource : public FrameSource {
  public:
   explicit MemorySource(std::vector<Frame> frames);

@@ -54,6 +54,8 @@ Result run(const Pipeline& pipeline, FrameSource& source) {
 
 Result run(Pipeline pipeline, const std::vector<Frame>& frames) {
   pipeline.input.contacts.files = {"memory"};
+  for (const Frame& frame : frames)
+    if (frame.wall_contacts.size() > 0) pipeline.input.wall_contacts.files = {"memory"};
   MemorySource source(frames);
   return run(pipeline, source);
 }

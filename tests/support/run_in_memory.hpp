@@ -32,7 +32,8 @@ struct Result {
 };
 
 Result run(const Pipeline& pipeline, FrameSource& source);
-/// Runs on frames in memory; the pipeline is told that there are contacts.
+/// Runs on frames in memory; the pipeline is told that there are contacts, and those with walls where a frame has
+/// any.
 Result run(Pipeline pipeline, const std::vector<Frame>& frames);
 
 }  // namespace grainvdb::testing

@@ -170,5 +170,53 @@ TEST(HalfBranches, NeitherPointsNorRadiiIsRefused) {
   EXPECT_THAT(message(frame), testing::HasSubstr("no contact point and the particles no radius"));
 }
 
+void add_wall_contact(Frame& frame, std::int64_t id, const Vec3& force, const Vec3& point) {
+  frame.wall_contacts.id.push_back(id);
+  for (std::size_t a = 0; a < 3; ++a) {
+    frame.wall_contacts.force[a].push_back(force[a]);
+    frame.wall_contacts.point[a].push_back(point[a]);
+  }
+}
+
+TEST(WallHalfBranches, OnePerContactTowardsThePoint) {
+  Frame frame = three_grains();
+  EXPECT_EQ(wall_half_branches(frame).size(), 0u);
+  add_wall_contact(frame, 7, {1, 2, 3}, {0.5, 5, 4.1});
+  add_wall_contact(frame, 7, {4, 5, 6}, {9.6, 5, 5});  // across x = 0
+  add_wall_contact(frame, 31, {7, 8, 9}, {2.4, 4, 5});
+  const HalfBranches b = wall_half_branches(frame);
+  ASSERT_EQ(b.size(), 3u);
+  expect_near(row(b.start, 0), {0.5, 5, 5});
+  expect_near(row(b.arm, 0), {0, 0, 0.9});  // centre minus contact point
+  expect_near(row(b.force, 0), {1, 2, 3});
+  expect_near(row(b.start, 1), {0.5, 5, 5});
+  expect_near(row(b.arm, 1), {0.9, 0, 0});
+  expect_near(row(b.start, 2), {2.4, 5, 5});
+  expect_near(row(b.arm, 2), {0, 1, 0});
+  expect_near(row(b.force, 2), {7, 8, 9});
+  EXPECT_THAT(wall_branch_particles(frame), testing::ElementsAre(0, 0, 2));
+}
+
+TEST(WallHalfBranches, WhatDoesNotFitIsRefused) {
+  const auto refusal = [](std::int64_t id, const Vec3& point) -> std::string {
+    Frame frame = three_grains();
+    add_wall_contact(frame, id, {1, 0, 0}, point);
+    try {
+      wall_half_branches(frame);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(refusal(8, {0.5, 5, 4}),
+              testing::AllOf(testing::StartsWith("dump.5: step 5: the contact of a wall with particle 8 names"),
+                             testing::HasSubstr("found id 8")));
+  EXPECT_THAT(
+      refusal(20, {0, 0, 0}),
+      testing::AllOf(testing::StartsWith("dump.5: step 5: the contact point of a wall and particle 20 lies far"),
+                     testing::HasSubstr("at most 1, two radii")));
+  EXPECT_EQ(refusal(20, {9.1, 5, 4.01}), "no error");
+}
+
 }  // namespace
 }  // namespace grainvdb::branches_test

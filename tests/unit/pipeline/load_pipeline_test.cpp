@@ -253,5 +253,33 @@ TEST(LoadPipeline, AverageUntil) {
     EXPECT_THROW(with(refused), ConfigError) << refused;
 }
 
+TEST(LoadPipeline, ContactsWithWalls) {
+  const auto with = [](const std::string& walls) {
+    std::string text = minimal_text();
+    const std::string before = "lattice:";
+    return text.insert(text.find(before), "  wall_contacts: " + walls + "\n");
+  };
+  const WallContactSpec by_compute = load(with("{files: /d/w*, compute: [pos, id, force]}")).input.wall_contacts;
+  EXPECT_EQ(by_compute.files, Texts{"/d/w*"});
+  EXPECT_EQ(by_compute.compute, (Texts{"pos", "id", "force"}));
+  EXPECT_TRUE(by_compute.columns.empty());
+  const WallContactSpec by_columns =
+      load(with("{files: /d/w, columns: {id: i, mesh: m, triangle: t, force: [a, b, c], point: [x, y, z]}}"))
+          .input.wall_contacts;
+  EXPECT_EQ(by_columns.columns, (std::map<std::string, Texts>{{"id", {"i"}},
+                                                              {"mesh", {"m"}},
+                                                              {"triangle", {"t"}},
+                                                              {"force", {"a", "b", "c"}},
+                                                              {"point", {"x", "y", "z"}}}));
+  EXPECT_THAT(test::refusal(with("{compute: [pos, id, force]}")),
+              testing::HasSubstr("'input.wall_contacts.files' is missing"));
+  EXPECT_THAT(test::refusal(with("{files: w, columns: {id: i, force: [a, b, c]}}")),
+              testing::HasSubstr("'input.wall_contacts.columns.point' is missing"));
+  EXPECT_THAT(test::refusal(with("{files: w, columns: {id: i, point: [x, y, z]}}")),
+              testing::HasSubstr("the contact force must be given in one way"));
+  EXPECT_THAT(test::refusal(with("{files: w, compute: [id], columns: {id: i, force: [a, b, c], point: [x, y, z]}}")),
+              testing::HasSubstr("the columns of the wall contact dumps are described twice"));
+}
+
 }  // namespace
 }  // namespace grainvdb::load_pipeline_test

@@ -110,5 +110,14 @@ TEST(MemoryModel, KnowsOfTheForcesThatCorrectContacts) {
   EXPECT_NEAR(corrected.per_particle - model_of({"contact_stress"}).per_particle, holes * (3 * 8 + 8), 1e-9);  // mass
 }
 
+TEST(MemoryModel, CountsContactPointsOfWalls) {
+  constexpr double holes = 1.1;
+  Pipeline p = pipeline_of({"wall_force"});
+  p.input.wall_contacts.files = {"walls"};
+  const MemoryModel walls = memory_model(make_plan(p), p);
+  EXPECT_NEAR(walls.per_contact_read, holes * (2 * 8 + 3 * 8 + 3 * 8), 1e-9);
+  EXPECT_GT(walls.per_contact, 2 * (9 + 3) * 8);  // half branches and their values
+}
+
 }  // namespace
 }  // namespace grainvdb::memory_model_test
