@@ -46,10 +46,43 @@ struct ColumnKeys {
   }
 };
 
+/// The names of the first `count` columns of a compute from `first` on, counted from 1.
+std::vector<std::string> columns_of(const std::string& compute, std::size_t first, std::size_t count) {
+  std::vector<std::string> names;
+  for (std::size_t n = first; n < first + count; ++n) names.push_back("c_" + compute + '[' + std::to_string(n) + ']');
+  return names;
+}
+
+KeyInfo compute_name_key(const char* name, const char* help, void (*apply)(ColumnNames&, const std::string&)) {
+  KeyInfo key{"input.contacts.lammps", name, ValueType::text, help};
+  key.required = true;
+  key.apply = [apply](Pipeline& p, const ConfigValue& v) { apply(contact_columns(p), std::get<std::string>(v)); };
+  return key;
+}
+
+void add_lammps_keys(Schema& schema) {
+  schema.sections.push_back({"input.contacts.lammps",
+                             "Names of the LAMMPS computes that made a dump of a granular pair style, in place of "
+                             "columns."});
+  schema.keys.push_back(compute_name_key("ids", "Of compute property/local patom1 patom2.",
+                                         [](ColumnNames& columns, const std::string& compute) {
+                                           columns["id1"] = columns_of(compute, 1, 1);
+                                           columns["id2"] = columns_of(compute, 2, 1);
+                                         }));
+  schema.keys.push_back(compute_name_key("forces",
+                                         "Of compute pair/local fx fy fz p1 p2 p3, the normal force and the "
+                                         "tangential one.",
+                                         [](ColumnNames& columns, const std::string& compute) {
+                                           columns["normal_force"] = columns_of(compute, 1, 3);
+                                           columns["tangential_force"] = columns_of(compute, 4, 3);
+                                         }));
+}
+
 void add_pair_contact_keys(Schema& schema) {
-  schema.sections.push_back({"input.contacts",
-                             "Contact dumps, for the contact stress. Give compute or columns, or neither for columns "
-                             "named id1 id2 fx fy fz."});
+  schema.sections.push_back(
+      {"input.contacts",
+       "Contact dumps, for the contact stress. Give compute (LIGGGHTS), lammps or columns, or none "
+       "of these for columns named id1 id2 fx fy fz."});
   auto files = texts_key("input.contacts", "files", "Contact dumps, as input.particles.", {},
                          [](Pipeline& p, const ConfigValue& v) { p.input.contacts.files = input_paths(p, v); });
   files.required = true;
@@ -67,6 +100,7 @@ void add_pair_contact_keys(Schema& schema) {
   column.add("normal_force", 3, false, "Normal part of the force on id1; with tangential_force in place of force.");
   column.add("tangential_force", 3, false, "Tangential part of the force on id1.");
   column.add("point", 3, false, "Contact point; without it, the radius-weighted point between the centres.");
+  add_lammps_keys(schema);
 }
 
 void add_wall_contact_keys(Schema& schema) {

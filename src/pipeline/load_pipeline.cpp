@@ -52,6 +52,18 @@ void check_lattice(const Pipeline& p) {
   require("kernel", p.cutoff, "kernel.cutoff");
 }
 
+/// input.contacts.lammps stands for columns.
+void check_lammps_contacts(const Pipeline& p) {
+  if (!p.where.contains("input.contacts.lammps")) return;
+  for (const char* other : {"input.contacts.columns", "input.contacts.compute"})
+    if (p.where.contains(other))
+      throw ConfigError({p.location(other),
+                         "the columns of the contact dumps are described twice",
+                         std::string(other) + " beside input.contacts.lammps",
+                         "one of them",
+                         {}});
+}
+
 /// What `section` says of the columns of contact dumps.
 void check_columns_of(const Pipeline& p, const std::string& section, const std::string& noun,
                       const std::vector<std::string>& compute,
@@ -85,6 +97,7 @@ void check_together(const Pipeline& p, const Schema& schema) {
   check_trace(p);
   check_measure(p);
   check_lattice(p);
+  check_lammps_contacts(p);
   check_columns_of(p, "input.contacts", "contact", p.input.contacts.compute, p.input.contacts.columns);
   check_columns_of(p, "input.wall_contacts", "wall contact", p.input.wall_contacts.compute,
                    p.input.wall_contacts.columns);

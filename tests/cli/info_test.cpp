@@ -73,7 +73,7 @@ TEST(Info, RefusesWhatIsNoDump) {
   EXPECT_EQ(run_command({"info"}, folder.path()).exit_code, 1);
   EXPECT_EQ(run_command({"info", "d.txt", "--dt", "0"}, folder.path()).exit_code, 1);
   folder.write("good.txt", dump_text(7));
-  EXPECT_EQ(run_command({"info", "good.txt", "--pipeline", "no_such.yaml"}, folder.path()).exit_code, 2);
+  EXPECT_EQ(run_command({"info", "good.txt", "--pipeline", "no_such.yaml"}, folder.path()).exit_code, 3);
 }
 
 }  // namespace

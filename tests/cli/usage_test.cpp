@@ -169,8 +169,8 @@ TEST(SchemaCommand, PrintsJsonAndText) {
   EXPECT_TRUE(schema["properties"]["stages"]["properties"]["temperature"]["properties"].contains("mode"));
   const CommandResult text = grainvdb({"schema", "--text"});
   EXPECT_EQ(text.exit_code, 0);
-  EXPECT_THAT(text.out, AllOf(HasSubstr("kernel:  (required)"), HasSubstr("  cutoff: number  (required)"),
-                              HasSubstr("[length]")));
+  EXPECT_THAT(text.out,
+              AllOf(HasSubstr("input:  (required)"), HasSubstr("  cutoff: number  (required)"), HasSubstr("[length]")));
 }
 
 TEST(Graph, ShowsWhatWouldRunWithoutTheDumps) {

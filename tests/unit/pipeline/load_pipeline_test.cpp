@@ -253,6 +253,27 @@ TEST(LoadPipeline, AverageUntil) {
     EXPECT_THROW(with(refused), ConfigError) << refused;
 }
 
+TEST(LoadPipeline, ContactsOfLammpsComputes) {
+  const auto with = [](const std::string& contacts) {
+    std::string text = minimal_text();
+    const std::string before = "lattice:";
+    return text.insert(text.find(before), "  contacts: " + contacts + "\n");
+  };
+  const ContactSpec contacts = load(with("{files: c, lammps: {ids: pp, forces: pl}}")).input.contacts;
+  EXPECT_EQ(contacts.columns, (std::map<std::string, Texts>{{"id1", {"c_pp[1]"}},
+                                                            {"id2", {"c_pp[2]"}},
+                                                            {"normal_force", {"c_pl[1]", "c_pl[2]", "c_pl[3]"}},
+                                                            {"tangential_force", {"c_pl[4]", "c_pl[5]", "c_pl[6]"}}}));
+  EXPECT_TRUE(contacts.compute.empty());
+  EXPECT_THAT(test::refusal(with("{files: c, lammps: {ids: pp}}")),
+              testing::HasSubstr("'input.contacts.lammps.forces' is missing"));
+  EXPECT_THAT(test::refusal(with("{files: c, lammps: {ids: pp, forces: pl}, compute: [id, force]}")),
+              testing::HasSubstr("input.contacts.compute beside input.contacts.lammps"));
+  EXPECT_THAT(
+      test::refusal(with("{files: c, lammps: {ids: pp, forces: pl}, columns: {id1: a, id2: b, force: [x, y, z]}}")),
+      testing::HasSubstr("input.contacts.columns beside input.contacts.lammps"));
+}
+
 TEST(LoadPipeline, ContactsWithWalls) {
   const auto with = [](const std::string& walls) {
     std::string text = minimal_text();
