@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -36,8 +35,8 @@ std::string pair_name(const Contacts& contacts, std::size_t k) {
 }
 
 /// `contact` says which one it is.
-std::size_t particle_of(const Frame& frame, const ParticleRows& rows, std::int64_t id,
-                        const std::function<std::string()>& contact) {
+template <class Name>
+std::size_t particle_of(const Frame& frame, const ParticleRows& rows, std::int64_t id, const Name& contact) {
   const std::size_t row = rows.find(id);
   if (row == ParticleRows::absent)
     fail(frame, "the contact " + contact() + " names a particle that the frame lacks", "id " + std::to_string(id),
@@ -54,8 +53,8 @@ Vec3 difference(const Box& box, const Columns3& a, std::size_t i, const Columns3
 }
 
 /// `touching` says which particle or particles meet at the contact point.
-void check_arm(const Frame& frame, std::size_t particle, const Vec3& arm,
-               const std::function<std::string()>& touching) {
+template <class Name>
+void check_arm(const Frame& frame, std::size_t particle, const Vec3& arm, const Name& touching) {
   if (frame.particles.radius.empty()) return;
   const double length = std::sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
   const double limit = longest_arm * frame.particles.radius[particle];
