@@ -5,6 +5,7 @@
 #include "measure/contact_graph.hpp"
 #include "measure/counted_region.hpp"
 #include "measure/grains.hpp"
+#include "measure/option_values.hpp"
 #include "measure/structure.hpp"
 
 namespace grainvdb {

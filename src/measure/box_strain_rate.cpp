@@ -9,6 +9,7 @@
 #include "grainvdb/run.hpp"
 #include "measure/affine_fit.hpp"
 #include "measure/box_grid.hpp"
+#include "measure/option_values.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/voxel_values.hpp"
 
@@ -61,7 +62,7 @@ class BoxStrainRate : public Measurement {
   explicit BoxStrainRate(const MeasurementSetting& setting)
       : size_(size_of(setting.options)),
         fewest_(static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("particles_min")))),
-        condition_max_(std::get<double>(setting.options.at("condition_max"))),
+        condition_max_(number_option(setting.options, "condition_max")),
         lattice_(setting.lattice),
         box_(setting.box) {}
 

@@ -4,6 +4,7 @@
 
 #include "grainvdb/run.hpp"
 #include "measure/distribution.hpp"
+#include "measure/option_values.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/voxel_values.hpp"
 
@@ -16,7 +17,7 @@ constexpr double right_angle = std::numbers::pi / 2;
 class Coaxiality : public Measurement {
  public:
   explicit Coaxiality(const MeasurementSetting& setting)
-      : least_phi_(std::get<double>(setting.options.at("phi_min"))),
+      : least_phi_(number_option(setting.options, "phi_min")),
         angles_(0, right_angle, static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("bins"))),
                 independence(setting.lattice.voxel(), setting.kernel)) {}
 

@@ -4,6 +4,7 @@
 
 #include "grainvdb/run.hpp"
 #include "measure/binned_curve.hpp"
+#include "measure/option_values.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/voxel_values.hpp"
 
@@ -43,7 +44,7 @@ class CollapseOnPhi : public Measurement {
  public:
   explicit CollapseOnPhi(const MeasurementSetting& setting)
       : fields_(with_phi(quantities(setting.options))),
-        least_phi_(std::get<double>(setting.options.at("phi_min"))),
+        least_phi_(number_option(setting.options, "phi_min")),
         plain_(quantities(setting.options).size(), BinnedCurve(width(setting))),
         logarithmic_(plain_) {}
 
@@ -64,7 +65,7 @@ class CollapseOnPhi : public Measurement {
   }
 
  private:
-  static double width(const MeasurementSetting& setting) { return std::get<double>(setting.options.at("width")); }
+  static double width(const MeasurementSetting& setting) { return number_option(setting.options, "width"); }
 
   static Table table(const std::string& field, const BinnedCurve& curve, const BinnedCurve& logarithmic) {
     const Dimension unit = dimension_of(field);

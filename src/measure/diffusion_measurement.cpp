@@ -6,6 +6,7 @@
 #include "measure/counted_region.hpp"
 #include "measure/dispersion.hpp"
 #include "measure/grains.hpp"
+#include "measure/option_values.hpp"
 #include "measure/structure.hpp"
 
 namespace grainvdb {
@@ -54,7 +55,7 @@ class Diffusion : public Measurement {
     TableColumn variance{"variance_" + axis, {0, 2, 0}, "variance of the displacement along " + axis};
     for (std::size_t k = 0; k < dispersion_.lags(); ++k) variance.values.push_back(dispersion_.variance(k, a));
     table.columns.push_back(std::move(variance));
-    const double from = std::get<double>(options_.at("fit_from"));
+    const double from = number_option(options_, "fit_from");
     const Diffusivity by_time = dispersion_.diffusivity(a, Dispersion::Against::time, from);
     const Diffusivity by_way = dispersion_.diffusivity(a, Dispersion::Against::travelled, from);
     const double peclet = diameter_ / by_way.value;

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-#include "measure/grains.hpp"
+#include "measure/option_values.hpp"
 
 namespace grainvdb {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "measure/estimate_columns.hpp"
 #include "measure/fluidity_fit.hpp"
+#include "measure/option_values.hpp"
 #include "measure/register.hpp"
 #include "measure/state_samples.hpp"
 
@@ -45,10 +46,10 @@ class FluidityMeasurement : public Measurement {
   explicit FluidityMeasurement(const MeasurementSetting& setting)
       : spin_(with_spin(setting.options)),
         hold_(std::get<std::string>(setting.options.at("hold_c"))),
-        condition_limit_(std::get<double>(setting.options.at("condition_limit"))),
-        error_floor_(std::get<double>(setting.options.at("error_floor"))),
+        condition_limit_(number_option(setting.options, "condition_limit")),
+        error_floor_(number_option(setting.options, "error_floor")),
         compare_(std::get<std::string>(setting.options.at("compare"))),
-        c_(held_c(std::get<double>(setting.options.at("c")), compare_)),
+        c_(held_c(number_option(setting.options, "c"), compare_)),
         samples_(make_samples(setting, sample_fields(spin_), spin_ ? 4 : 2, quantities(spin_))) {}
 
   void take(const OutputFields& output) override { samples_->take(output); }

@@ -2,11 +2,9 @@
 /// Small things that measurements of single grains share.
 #include <cstddef>
 #include <numeric>
-#include <string>
 #include <vector>
 
 #include "grainvdb/frame.hpp"
-#include "grainvdb/options.hpp"
 
 namespace grainvdb {
 
@@ -26,20 +24,6 @@ inline void push_back(Columns3& columns, const Vec3& v) {
 /// Number mean; NaN where there are none.
 inline double mean_diameter(const std::vector<double>& radius) {
   return 2 * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size());
-}
-
-inline double number_option(const OptionValues& options, const std::string& name) {
-  return std::get<double>(options.at(name));
-}
-
-/// The value of a length option, or `diameters` mean diameters where it is 0.
-inline double length_option(const OptionValues& options, const std::string& name, double diameters, double diameter) {
-  const double given = number_option(options, name);
-  return given > 0 ? given : diameters * diameter;
-}
-
-inline std::size_t count_option(const OptionValues& options, const std::string& name) {
-  return static_cast<std::size_t>(std::get<std::int64_t>(options.at(name)));
 }
 
 }  // namespace grainvdb

@@ -4,6 +4,7 @@
 
 #include "grainvdb/run.hpp"
 #include "measure/distribution.hpp"
+#include "measure/option_values.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/voxel_values.hpp"
 
@@ -19,8 +20,8 @@ class IncipientYield : public Measurement {
  public:
   explicit IncipientYield(const MeasurementSetting& setting)
       : weight_(weight_of(setting.options)),
-        least_phi_(std::get<double>(setting.options.at("phi_min"))),
-        ratio_(distribution(setting, 0, std::get<double>(setting.options.at("mu_max")))),
+        least_phi_(number_option(setting.options, "phi_min")),
+        ratio_(distribution(setting, 0, number_option(setting.options, "mu_max"))),
         deviators_(3, distribution(setting, -1, 2)) {}
 
   void take(const OutputFields& fields) override {

@@ -9,7 +9,7 @@
 #include "grainvdb/kinematic.hpp"
 #include "grainvdb/run.hpp"
 #include "measure/drainage_fit.hpp"
-#include "measure/grains.hpp"
+#include "measure/option_values.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/voxel_values.hpp"
 

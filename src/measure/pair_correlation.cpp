@@ -6,7 +6,6 @@
 #include "base/parallel.hpp"
 #include "measure/ball_in_box.hpp"
 #include "measure/cell_grid.hpp"
-#include "measure/grains.hpp"
 
 namespace grainvdb {
 namespace {

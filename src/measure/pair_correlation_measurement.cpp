@@ -3,6 +3,7 @@
 
 #include "measure/counted_region.hpp"
 #include "measure/grains.hpp"
+#include "measure/option_values.hpp"
 #include "measure/pair_correlation.hpp"
 #include "measure/structure.hpp"
 

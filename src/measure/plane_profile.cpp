@@ -5,6 +5,7 @@
 #include "grainvdb/error.hpp"
 #include "measure/bins.hpp"
 #include "measure/estimate_columns.hpp"
+#include "measure/option_values.hpp"
 #include "measure/plane_means.hpp"
 #include "measure/register.hpp"
 
@@ -17,9 +18,9 @@ class PlaneProfile : public Measurement {
  public:
   explicit PlaneProfile(const MeasurementSetting& setting)
       : axis_(std::get<std::string>(setting.options.at("axis"))[0] - 'x'),
-        from_(std::get<double>(setting.options.at("from"))),
-        to_(std::get<double>(setting.options.at("to"))),
-        area_(std::get<double>(setting.options.at("area"))),
+        from_(number_option(setting.options, "from")),
+        to_(number_option(setting.options, "to")),
+        area_(number_option(setting.options, "area")),
         lattice_(setting.lattice),
         kernel_(setting.kernel),
         sums_(PlaneMeans::channels) {}

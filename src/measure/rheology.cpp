@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "measure/estimate_columns.hpp"
-#include "measure/grains.hpp"
+#include "measure/option_values.hpp"
 #include "measure/regime.hpp"
 #include "measure/register.hpp"
 #include "measure/rheology_fits.hpp"

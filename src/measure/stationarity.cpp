@@ -6,6 +6,7 @@
 #include "measure/balance.hpp"
 #include "measure/estimate_columns.hpp"
 #include "measure/field_profile.hpp"
+#include "measure/option_values.hpp"
 #include "measure/register.hpp"
 
 namespace grainvdb {
@@ -20,7 +21,7 @@ class StationarityMeasurement : public Measurement {
   explicit StationarityMeasurement(const MeasurementSetting& setting)
       : axis_(axis_of(setting.options, "axis")),
         flow_(axis_of(setting.options, "flow")),
-        gravity_(std::get<double>(setting.options.at("gravity"))),
+        gravity_(number_option(setting.options, "gravity")),
         profile_(spec_of(setting.options), setting.lattice, {"stress", "density"}) {}
 
   void add(const Frame& frame) override {
@@ -43,8 +44,8 @@ class StationarityMeasurement : public Measurement {
   static BinSpec spec_of(const OptionValues& options) {
     BinSpec spec;
     spec.axis = axis_of(options, "axis");
-    spec.from = std::get<double>(options.at("from"));
-    spec.to = std::get<double>(options.at("to"));
+    spec.from = number_option(options, "from");
+    spec.to = number_option(options, "to");
     return spec;
   }
 

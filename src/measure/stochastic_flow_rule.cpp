@@ -5,7 +5,7 @@
 
 #include "grainvdb/run.hpp"
 #include "measure/distribution.hpp"
-#include "measure/grains.hpp"
+#include "measure/option_values.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/streamlines.hpp"
 #include "measure/voxel_values.hpp"

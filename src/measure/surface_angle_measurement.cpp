@@ -9,6 +9,7 @@
 #include "measure/frame_series.hpp"
 #include "measure/free_surface.hpp"
 #include "measure/grains.hpp"
+#include "measure/option_values.hpp"
 #include "measure/structure.hpp"
 
 namespace grainvdb {

@@ -6,6 +6,7 @@
 #include "measure/counted_region.hpp"
 #include "measure/fluctuations.hpp"
 #include "measure/grains.hpp"
+#include "measure/option_values.hpp"
 #include "measure/structure.hpp"
 #include "measure/velocity_correlation.hpp"
 

@@ -9,6 +9,7 @@
 #include "measure/counted_region.hpp"
 #include "measure/grains.hpp"
 #include "measure/local_packing.hpp"
+#include "measure/option_values.hpp"
 #include "measure/spread.hpp"
 #include "measure/structure.hpp"
 
@@ -177,7 +178,7 @@ class Voronoi : public Measurement {
   OptionValues options_;
   CountedRegion region_;
   LucyKernel kernel_;
-  double width_ = std::get<double>(options_.at("bin_width"));
+  double width_ = number_option(options_, "bin_width");
   double window_ = 0;
   Spread cell_{width_}, local_{width_}, kernel_phi_{width_}, by_centres_{width_}, by_volume_{width_}, by_cells_{width_};
   double volume_ = 0, cell_volume_ = 0, not_enclosed_ = 0;
