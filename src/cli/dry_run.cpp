@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "cli/survey.hpp"
 #include "grainvdb/memory_model.hpp"
 #include "grainvdb/run.hpp"
 #include "grainvdb/topology.hpp"

@@ -8,6 +8,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/subcommands.hpp"
 #include "grainvdb/error.hpp"
 #include "grainvdb/version.hpp"
 #include "pipeline/text.hpp"
@@ -44,8 +45,7 @@ int fail(int code, const std::string& message) {
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
+  for (const CLI::App* command : subcommands_of(app)) names.push_back(command->get_name());
   return names;
 }
 

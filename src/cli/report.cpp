@@ -8,7 +8,6 @@
 
 #include <sys/resource.h>
 
-#include "cli/survey.hpp"
 #include "grainvdb/mask.hpp"
 #include "pipeline/number.hpp"
 

@@ -110,8 +110,7 @@ WallContactLayout wall_contact_layout(const FrameHeader& header, const std::stri
         {finder.location(), "what the columns of the wall contact dump mean is not known", finder.names(),
          "input.wall_contacts.compute or input.wall_contacts.columns",
          "Say it in the pipeline file: compute lists the keywords of the LIGGGHTS compute wall/gran/local that made "
-         "the "
-         "dump; columns gives the column names of id, point and force (or normal_force and tangential_force)"});
+         "the dump; columns gives the column names of id, point and force (or normal_force and tangential_force)"});
   const WallContactNames names = spec.wall_contacts.columns.empty()
                                      ? names_in_compute(finder, spec.wall_contacts.compute)
                                      : names_in_map(spec.wall_contacts.columns);
