@@ -3,6 +3,7 @@
 #include <exception>
 #include <iostream>
 #include <new>
+#include <thread>
 
 #include <malloc.h>
 
@@ -80,17 +81,20 @@ int bad_command_line(const CLI::App& app, const CLI::ParseError& error) {
                              " --help' for usage.");
 }
 
-// Columns of frames go back to the system when a frame is done. Otherwise the allocator learns from the first ones to
-// keep what is smaller than 32 MB in its heaps, of which every thread has its own, and full of holes.
-void give_large_blocks_back() {
+// What the memory of a run is must not depend on how long it takes. Columns of frames go back to the system when a frame is
+// done; otherwise the allocator learns from the first ones to keep what is smaller than 32 MB in its heaps. And threads
+// share heaps: with one each, what one frees is of no use to the others, and the holes grow from frame to frame.
+void bound_heaps() {
 #ifdef __GLIBC__
   constexpr int large = 4 << 20;
+  constexpr unsigned threads_of_a_heap = 8;  // more of them would wait for one another
   mallopt(M_MMAP_THRESHOLD, large);
+  mallopt(M_ARENA_MAX, 1 + static_cast<int>(std::thread::hardware_concurrency() / threads_of_a_heap));
 #endif
 }
 
 int run(int argc, char** argv) {
-  give_large_blocks_back();
+  bound_heaps();
   CLI::App app("Continuum fields from particle snapshots of granular flow.", "grainvdb");
   app.set_version_flag("--version", "grainvdb " GRAINVDB_VERSION);
   app.footer(main_footer);
