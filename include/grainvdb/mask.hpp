@@ -31,6 +31,7 @@ enum class Reason : std::uint32_t {
   behind_wall = 1u << 14,           ///< the centre of the voxel lies behind a wall: every field undefined
   near_wall = 1u << 15,             ///< the kernel comes nearer to a wall than walls.clearance: every field undefined
   no_stress_gradient = 1u << 16,    ///< the stress is missing on both sides along an axis: its gradient undefined
+  no_species = 1u << 17,            ///< no grain of a species reaches the voxel: its velocity, diameter, … undefined
 };
 
 struct ReasonInfo {

@@ -108,9 +108,10 @@ struct Moment {
 /// A half branch of a contact: from the particle's centre towards the contact point. a = x_α - c is centre minus
 /// contact point (physics eq. 8), so the points of the branch are x_α - s a, 0 ≤ s ≤ 1.
 struct HalfBranches {
-  Columns3 start;  ///< x_α [length]
-  Columns3 arm;    ///< a_αβ [length]
-  Columns3 force;  ///< F_αβ, the force on α [force]
+  Columns3 start;              ///< x_α [length]
+  Columns3 arm;                ///< a_αβ [length]
+  Columns3 force;              ///< F_αβ, the force on α [force]
+  std::vector<int> species{};  ///< of α: its number in Pipeline::species, -1: none; empty where there are no species
   std::size_t size() const { return start[0].size(); }
 };
 

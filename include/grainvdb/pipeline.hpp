@@ -12,6 +12,7 @@
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/options.hpp"
 #include "grainvdb/reduced_units.hpp"
+#include "grainvdb/species.hpp"
 #include "grainvdb/stage.hpp"
 #include "grainvdb/trace_spec.hpp"
 #include "grainvdb/walls.hpp"
@@ -63,6 +64,7 @@ struct Pipeline {
   std::string file;  ///< where it was read from
   InputSpec input;
   Selection select;
+  std::vector<Species> species;  ///< of which there are partial fields; no grain may belong to two
   WallSpec walls;
   FrameRange frames;
   std::optional<std::pair<Vec3, Vec3>> region;  ///< where fields are wanted: voxel centres in lo ≤ x < hi [length]

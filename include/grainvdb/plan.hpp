@@ -2,6 +2,7 @@
 /// What a pipeline's wanted outputs need, resolved backwards, so that nothing else is read, splatted or written.
 #include <array>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -44,6 +45,7 @@ struct Plan {
   ErrorPlan until;                      ///< that of average.until alone
   std::vector<MomentPtr> block_sums;    ///< the moments that errors need, which are summed by blocks as well
   std::vector<std::string> not_needed;  ///< stages of the registry that this plan does not run
+  std::shared_ptr<const StageRegistry> with_species;  ///< keeps the stages where the pipeline has species
 };
 
 /// What is read of a frame in any of the sweeps.
@@ -53,6 +55,7 @@ std::set<BranchKind> all_branch_kinds(const Plan& plan);
 /// Whether one of these tells wall grains from others.
 bool tells_walls(const std::set<BranchKind>& kinds);
 
+/// The stages are those of the registry and, where the pipeline has species, their partial fields.
 /// Throws ConfigError for an unknown field (with "did you mean"), for a cycle among stages (naming it), and for a
 /// kernel that could miss every voxel centre (c < √3/2 h) or is too narrow for a moment that interpolates to particles
 /// (c < √3 h). Throws LimitError for

@@ -67,6 +67,13 @@ struct Stage {
   std::function<void(const StageInput&, SparseField& out)> compute;
   /// For standard errors: the field among the needs that is derived again without each block of frames.
   std::string error_of{};
+  /// Whether there is such a field of each species of grains (Pipeline::species) as well: needs and compute must do
+  /// with sums over particles and half branches, and with other such fields.
+  bool by_species = false;
+  /// As `conflict`, where the stage is asked for of a species.
+  std::function<std::optional<OptionConflict>(const StageSettings&)> species_conflict{};
+  /// For the field of a species: that of all grains.
+  std::string species_of{};
 };
 
 /// The stages that can be asked for, by name.

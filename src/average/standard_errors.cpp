@@ -4,7 +4,6 @@
 #include "average/register.hpp"
 
 namespace grainvdb {
-namespace {
 
 Stage standard_error_of(const Stage& field) {
   Stage s;
@@ -18,8 +17,6 @@ Stage standard_error_of(const Stage& field) {
   s.error_of = field.name;
   return s;
 }
-
-}  // namespace
 
 void register_standard_errors(StageRegistry& registry) {
   for (const char* name :

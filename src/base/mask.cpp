@@ -25,6 +25,7 @@ const std::vector<ReasonInfo>& reasons() {
       {Reason::near_wall, "near_wall", "the kernel comes nearer to a wall than the clearance"},
       {Reason::no_stress_gradient, "no_stress_gradient",
        "the stress is missing on both sides along an axis: its gradient undefined"},
+      {Reason::no_species, "no_species", "no grain of a species within the cutoff: its ratios undefined"},
   };
   return all;
 }

@@ -47,6 +47,7 @@ void keep_inside(const WallDomain& domain, HalfBranches& b) {
   std::stable_partition(rows.begin(), rows.end(),
                         [all = rows](std::size_t n) { return std::binary_search(all.begin(), all.end(), n ^ 1U); });
   for (Columns3* columns : {&b.start, &b.arm, &b.force}) keep_rows(*columns, rows);
+  keep_rows(b.species, rows);
 }
 
 }  // namespace grainvdb

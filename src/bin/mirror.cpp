@@ -48,6 +48,7 @@ void append_image(HalfBranches& b, std::size_t n, const Wall& plane) {
   append(b.start, n, plane.direction, distance(plane, at(b.start, n)), 1);
   append_vector(b.arm, n, plane.direction);
   append_vector(b.force, n, plane.direction);
+  append_same(b.species, n);
 }
 
 double nearest_end(const Particles& p, std::size_t n, const Wall& plane) {

@@ -44,6 +44,7 @@ Json describe_stage(const Stage& stage) {
           {"needs", needs},
           {"reads", column_names(columns)},
           {"sweeps", plan.sweeps.size()},
+          {"by_species", stage.by_species},
           {"options", options}};
 }
 
@@ -55,6 +56,8 @@ void print_stage(const Json& stage) {
             << "  needs       " << joined(stage["needs"], "no other field") << '\n'
             << "  reads       " << joined(stage["reads"], "nothing") << " in " << stage["sweeps"]
             << (stage["sweeps"] == 1 ? " sweep" : " sweeps") << '\n';
+  if (stage["by_species"])
+    std::cout << "  species     of each as well, as " << stage["name"].get<std::string>() << "_NAME\n";
   print_options(stage["options"]);
 }
 

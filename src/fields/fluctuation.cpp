@@ -245,6 +245,11 @@ void set_fluctuation(Stage& stage, const Fluctuating& f) {
     return OptionConflict{"self_weight", "'corrected' with mode 'two_pass_profile'",
                           "'none': means over whole planes hardly follow one particle"};
   };
+  stage.species_conflict = [f](const StageSettings& settings) -> std::optional<OptionConflict> {
+    if (!one_pass(mode_of(f, settings))) return std::nullopt;
+    return OptionConflict{"mode", "'" + mode_of(f, settings) + "' for one species",
+                          "'two_pass' or 'two_pass_profile': about the mean of all grains"};
+  };
   stage.needs = [f](const StageSettings& settings) {
     StageNeeds needs{{}, {fluctuation_moment(f, settings), volume_moment()}};
     if (without_self_weight(f, settings)) needs.moments.push_back(divisor_moment(f, settings));

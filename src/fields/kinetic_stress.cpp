@@ -133,6 +133,7 @@ void register_kinetic_stress(StageRegistry& registry) {
   s.components = 9;
   s.dimension = dimension::stress;
   s.additive = true;
+  s.by_species = true;
   s.description = "kinetic stress, tension positive, row-major ij";
   s.equation = "-sum m u'_i u'_j W, u' = v_a - u(x_a)  (8)";
   s.options = {
@@ -143,6 +144,11 @@ void register_kinetic_stress(StageRegistry& registry) {
            "them), time_mean_moments (u + L (x_a - x) with u and velocity_gradient L of the time mean at the voxel; "
            "one sweep with more sums), or instantaneous (of the frame)",
        .choices = {"time_mean", "time_mean_moments", "instantaneous"}}};
+  s.species_conflict = [](const StageSettings& settings) -> std::optional<OptionConflict> {
+    if (!from_moments(settings)) return std::nullopt;
+    return OptionConflict{"reference", "'time_mean_moments' for one species",
+                          "'time_mean' or 'instantaneous': about the velocity of all grains"};
+  };
   s.needs = [](const StageSettings& settings) {
     if (!from_moments(settings)) return StageNeeds{{}, {kinetic_stress_moment(settings)}};
     return StageNeeds{{"velocity_gradient"},

@@ -9,6 +9,7 @@ namespace {
 Stage moment_stage(MomentPtr moment) {
   Stage s;
   s.additive = true;
+  s.by_species = true;
   s.needs = [moment](const StageSettings&) { return StageNeeds{{}, {moment}}; };
   s.compute = [moment](const StageInput& in, SparseField& out) { write_moment(in, *moment, out); };
   return s;

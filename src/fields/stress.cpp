@@ -8,6 +8,7 @@ void register_stress(StageRegistry& registry) {
   s.components = 9;
   s.dimension = dimension::stress;
   s.additive = true;
+  s.by_species = true;
   s.description = "total stress, tension positive, row-major ij";
   s.equation = "contact_stress + kinetic_stress  (8)";
   s.needs = [](const StageSettings&) { return StageNeeds{{"contact_stress", "kinetic_stress"}, {}}; };

@@ -9,6 +9,7 @@ void register_velocity(StageRegistry& registry) {
   Stage s;
   s.name = "velocity";
   s.components = 3;
+  s.by_species = true;
   s.dimension = dimension::velocity;
   s.description = "velocity";
   s.equation = "u = sum V v W / sum V W  (7); m for V when mass-weighted";

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <string>
 
+#include "pipeline/species_keys.hpp"
+
 namespace grainvdb {
 namespace {
 
@@ -18,6 +20,8 @@ void add_until_keys(Schema& schema, const StageRegistry& registry) {
   field.required = true;
   for (const Stage& stage : registry.stages())
     if (!stage.error_of.empty()) field.choices.push_back(stage.error_of);
+  field.hint = hint_at_species(registry);
+  field.name_pattern = pattern_of_species(registry);
   field.apply = [](Pipeline& p, const ConfigValue& v) { until_of(p).field = std::get<std::string>(v); };
   schema.keys.push_back(field);
   const auto add_target = [&](const char* name, const char* help, const char* unit, bool relative) {

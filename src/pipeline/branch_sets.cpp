@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -28,9 +29,12 @@ std::vector<std::uint8_t> roles_of_particles(const Frame& frame, const Pipeline&
 }
 
 /// What the particle of each half branch is.
-std::vector<std::uint8_t> roles_in(const std::vector<std::uint8_t>& role, const std::vector<std::size_t>& particle) {
-  std::vector<std::uint8_t> of_branch;
-  for (const std::size_t row : particle) of_branch.push_back(role[row]);
+template <class T>
+std::vector<T> by_branch(std::span<const T> of_particle, const std::vector<std::size_t>& particle) {
+  std::vector<T> of_branch;
+  if (of_particle.empty()) return of_branch;
+  of_branch.reserve(particle.size());
+  for (const std::size_t row : particle) of_branch.push_back(of_particle[row]);
   return of_branch;
 }
 
@@ -40,6 +44,7 @@ void append(const HalfBranches& from, std::size_t n, HalfBranches& to) {
     to.arm[a].push_back(from.arm[a][n]);
     to.force[a].push_back(from.force[a][n]);
   }
+  if (!from.species.empty()) to.species.push_back(from.species[n]);
 }
 
 /// Contacts that keep both half branches first, so that these stay together.
@@ -68,10 +73,14 @@ HalfBranches at_walls(const HalfBranches& all, const std::vector<std::uint8_t>& 
   return contacts;
 }
 
-void add_contacts_of_grains(const Frame& frame, const std::vector<std::uint8_t>& role, BranchSets& sets) {
+void add_contacts_of_grains(const Frame& frame, std::span<const std::uint8_t> role, std::span<const int> species,
+                            BranchSets& sets) {
   HalfBranches all = half_branches(frame);
+  std::vector<std::size_t> particle;
+  if (!role.empty() || !species.empty()) particle = branch_particles(frame);
+  all.species = by_branch(species, particle);
   if (!role.empty()) {
-    const std::vector<std::uint8_t> of_branch = roles_in(role, branch_particles(frame));
+    const std::vector<std::uint8_t> of_branch = by_branch(role, particle);
     if (sets.contains(BranchKind::outside_walls)) sets[BranchKind::outside_walls] = outside_walls(all, of_branch);
     if (sets.contains(BranchKind::at_walls)) sets[BranchKind::at_walls] = at_walls(all, of_branch);
   }
@@ -79,12 +88,15 @@ void add_contacts_of_grains(const Frame& frame, const std::vector<std::uint8_t>&
 }
 
 /// Behind those of contacts that have both half branches, so that these stay together.
-void add_contacts_with_walls(const Frame& frame, const std::vector<std::uint8_t>& role, BranchSets& sets) {
-  const HalfBranches halves = wall_half_branches(frame);
+void add_contacts_with_walls(const Frame& frame, std::span<const std::uint8_t> role, std::span<const int> species,
+                             BranchSets& sets) {
+  HalfBranches halves = wall_half_branches(frame);
+  const std::vector<std::size_t> particle = wall_branch_particles(frame);
+  halves.species = by_branch(species, particle);
   if (const auto all = sets.find(BranchKind::all); all != sets.end())
     for (std::size_t n = 0; n < halves.size(); ++n) append(halves, n, all->second);
   if (role.empty()) return;
-  const std::vector<std::uint8_t> of_branch = roles_in(role, wall_branch_particles(frame));
+  const std::vector<std::uint8_t> of_branch = by_branch(role, particle);
   if (const auto outside = sets.find(BranchKind::outside_walls); outside != sets.end())
     for (std::size_t n = 0; n < halves.size(); ++n)
       if (of_branch[n] != wall_grain) append(halves, n, outside->second);
@@ -119,7 +131,8 @@ bool is_wall_grain(const WallSpec& walls, const Selection& selection, const Box&
   return walls.types.empty() ? !is_selected(selection, box, p, i) : contains(walls.types, p.type[i]);
 }
 
-BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted) {
+BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, std::span<const int> species,
+                            const std::set<BranchKind>& wanted) {
   BranchSets sets;
   for (const BranchKind set : wanted) sets[set];
   const bool contacts = frame.contacts.size() > 0, wall_contacts = frame.wall_contacts.size() > 0;
@@ -127,8 +140,8 @@ BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, const 
   std::vector<std::uint8_t> role;
   if (wanted.contains(BranchKind::outside_walls) || wanted.contains(BranchKind::at_walls))
     role = roles_of_particles(frame, pipeline);
-  if (contacts) add_contacts_of_grains(frame, role, sets);
-  if (wall_contacts) add_contacts_with_walls(frame, role, sets);
+  if (contacts) add_contacts_of_grains(frame, role, species, sets);
+  if (wall_contacts) add_contacts_with_walls(frame, role, species, sets);
   return sets;
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <set>
+#include <span>
 
 #include "grainvdb/frame.hpp"
 #include "grainvdb/moment.hpp"
@@ -20,7 +21,9 @@ bool is_wall_grain(const WallSpec& walls, const Selection& selection, const Box&
                    std::size_t i);
 
 /// The wanted sets of the half branches of a frame's contacts, those with walls that are no grains behind the others.
-/// Throws InputError as half_branches does, whatever is wanted.
-BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted);
+/// `species` are those of the particles, as HalfBranches has them. Throws InputError as half_branches does, whatever is
+/// wanted.
+BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, std::span<const int> species,
+                            const std::set<BranchKind>& wanted);
 
 }  // namespace grainvdb

@@ -59,10 +59,11 @@ bool boolean(const KeyInfo& key, const ConfigNode& node) {
 std::string text_value(const KeyInfo& key, const ConfigNode& node) {
   const std::string& text = scalar(key, node);
   if (text.empty()) refuse(key, node, "is empty");
-  if (!key.choices.empty() && std::find(key.choices.begin(), key.choices.end(), text) == key.choices.end())
-    throw ConfigError({node.where, "unknown name in " + key.path(), quote_text(text), join_choices(key.choices),
-                       did_you_mean(text, key.choices)});
-  return text;
+  if (key.choices.empty() || std::find(key.choices.begin(), key.choices.end(), text) != key.choices.end()) return text;
+  std::string hint = did_you_mean(text, key.choices);
+  if (!hint.empty() && !key.hint.empty()) hint += ' ';
+  throw ConfigError(
+      {node.where, "unknown name in " + key.path(), quote_text(text), join_choices(key.choices), hint + key.hint});
 }
 
 void check_count(const KeyInfo& key, const ConfigNode& node, std::size_t count) {
@@ -112,6 +113,30 @@ std::vector<std::string> texts(const KeyInfo& key, const ConfigNode& node) {
       {entry.where, what + ' ' + quote_text(entry.key), {}, join_choices(names), did_you_mean(entry.key, names)});
 }
 
+/// The keys of a section of that kind.
+ConfigItem section_of_kind(const KeyInfo& key, const ItemKind& kind, const ConfigEntry& entry) {
+  ConfigItem result{kind.name, {}};
+  const auto find = [&](const std::string& name) {
+    return std::find_if(kind.keys.begin(), kind.keys.end(), [&](const KeyInfo& k) { return k.name == name; });
+  };
+  for (const ConfigEntry& value : entry.value.entries) {
+    const auto own = find(value.key);
+    if (own == kind.keys.end()) {
+      std::vector<std::string> names;
+      for (const KeyInfo& k : kind.keys) names.push_back(k.name);
+      refuse_name("unknown key of a " + kind.name + " in " + key.path() + ':', value, names);
+    }
+    result.values.emplace_back(value.key, convert(*own, value.value));
+  }
+  for (const KeyInfo& own : kind.keys) {
+    if (result.find(own.name) != nullptr) continue;
+    if (own.required)
+      throw ConfigError({entry.where, "the key '" + own.path() + "' is missing", {}, accepted(own), {}});
+    if (own.default_value) result.values.emplace_back(own.name, *own.default_value);
+  }
+  return result;
+}
+
 ConfigItem item(const KeyInfo& key, const ConfigNode& node) {
   if (node.kind != ConfigNode::Kind::mapping || node.entries.size() != 1)
     refuse(key, node, "has an item that is not one section");
@@ -124,24 +149,16 @@ ConfigItem item(const KeyInfo& key, const ConfigNode& node) {
     refuse_name("unknown kind of item in " + key.path() + ':', entry, names);
   }
   if (entry.value.kind != ConfigNode::Kind::mapping) refuse(key, node, "has an item without keys");
-  ConfigItem result{kind->name, {}};
-  const auto find = [&](const std::string& name) {
-    return std::find_if(kind->keys.begin(), kind->keys.end(), [&](const KeyInfo& k) { return k.name == name; });
-  };
-  for (const ConfigEntry& value : entry.value.entries) {
-    const auto own = find(value.key);
-    if (own == kind->keys.end()) {
-      std::vector<std::string> names;
-      for (const KeyInfo& k : kind->keys) names.push_back(k.name);
-      refuse_name("unknown key of a " + kind->name + " in " + key.path() + ':', value, names);
-    }
-    result.values.emplace_back(value.key, convert(*own, value.value));
-  }
-  for (const KeyInfo& own : kind->keys) {
-    if (result.find(own.name) != nullptr) continue;
-    if (own.required)
-      throw ConfigError({entry.where, "the key '" + own.path() + "' is missing", {}, accepted(own), {}});
-    if (own.default_value) result.values.emplace_back(own.name, *own.default_value);
+  return section_of_kind(key, *kind, entry);
+}
+
+std::vector<ConfigItem> named_items(const KeyInfo& key, const ConfigNode& node) {
+  if (node.kind != ConfigNode::Kind::mapping || node.entries.empty()) refuse(key, node, "must hold named sections");
+  std::vector<ConfigItem> result;
+  for (const ConfigEntry& entry : node.entries) {
+    if (entry.value.kind != ConfigNode::Kind::mapping) refuse(key, entry.value, "." + entry.key + " must be a section");
+    result.push_back(section_of_kind(key, key.kinds.at(0), entry));
+    result.back().kind = entry.key;
   }
   return result;
 }
@@ -184,6 +201,8 @@ ConfigValue convert(const KeyInfo& key, const ConfigNode& node) {
       return list<Vec3>(key, node, &point);
     case ValueType::items:
       return list<ConfigItem>(key, node, &item);
+    case ValueType::named_items:
+      return named_items(key, node);
     case ValueType::frame_range:
       return frame_range(key, node);
     case ValueType::window:

@@ -9,6 +9,7 @@
 #include "grainvdb/units.hpp"
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/number.hpp"
+#include "pipeline/species.hpp"
 #include "pipeline/wall_domain.hpp"
 #include "pipeline/wall_schema.hpp"
 
@@ -164,6 +165,7 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
   std::string text = "pipeline " + pipeline.file + '\n';
   if (pipeline.region)
     text += "region: " + corner_text(pipeline.region->first) + " to " + corner_text(pipeline.region->second) + '\n';
+  for (const Species& species : pipeline.species) text += "species " + to_string(species) + '\n';
   text += wall_text(pipeline.walls);
   text += "frames: " + frame_text(pipeline) + "; " + window_text(pipeline) + "\n\n";
   for (std::size_t s = 0; s < plan.sweeps.size(); ++s) {

@@ -17,7 +17,10 @@ Json number_schema(const KeyInfo& key, const char* type) {
 
 Json text_schema(const KeyInfo& key) {
   Json json{{"type", "string"}, {"minLength", 1}};
-  if (!key.choices.empty()) json["enum"] = key.choices;
+  if (key.choices.empty()) return json;
+  if (!key.name_pattern.empty())
+    return {{"type", "string"}, {"anyOf", {{{"enum", key.choices}}, {{"pattern", key.name_pattern}}}}};
+  json["enum"] = key.choices;
   return json;
 }
 
@@ -29,20 +32,23 @@ Json list_schema(const KeyInfo& key, const Json& items) {
 
 Json key_schema(const KeyInfo& key);
 
-/// A section that holds the one kind of item.
-Json kind_schema(const ItemKind& kind) {
+Json inside_of_kind(const ItemKind& kind) {
   Json properties = Json::object(), required = Json::array();
   for (const KeyInfo& key : kind.keys) {
     properties[key.name] = key_schema(key);
     if (key.required) required.push_back(key.name);
   }
-  const Json inside{{"type", "object"},
-                    {"description", kind.help},
-                    {"properties", properties},
-                    {"required", required},
-                    {"additionalProperties", false}};
   return {{"type", "object"},
-          {"properties", {{kind.name, inside}}},
+          {"description", kind.help},
+          {"properties", properties},
+          {"required", required},
+          {"additionalProperties", false}};
+}
+
+/// A section that holds the one kind of item.
+Json kind_schema(const ItemKind& kind) {
+  return {{"type", "object"},
+          {"properties", {{kind.name, inside_of_kind(kind)}}},
           {"required", Json::array({kind.name})},
           {"additionalProperties", false}};
 }
@@ -85,6 +91,11 @@ Json value_schema(const KeyInfo& key) {
       for (const ItemKind& kind : key.kinds) kinds.push_back(kind_schema(kind));
       return list_schema(key, {{"anyOf", kinds}});
     }
+    case ValueType::named_items:
+      return {{"type", "object"},
+              {"minProperties", 1},
+              {"propertyNames", {{"pattern", '^' + key.name_pattern + '$'}}},
+              {"additionalProperties", inside_of_kind(key.kinds.at(0))}};
     case ValueType::frame_range:
       return {{"anyOf",
                {{{"type", "string"}, {"pattern", "^([-+]?[0-9]+|[-+]?[0-9]*:[-+]?[0-9]*(:[0-9]*)?)$"}},

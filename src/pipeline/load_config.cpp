@@ -82,6 +82,8 @@ class Validation {
         if (key->type == ValueType::items)
           for (std::size_t n = 0; n < entry.value.items.size(); ++n)
             places.emplace(child + '[' + std::to_string(n) + ']', entry.value.items[n].where);
+        if (key->type == ValueType::named_items)
+          for (const ConfigEntry& named : entry.value.entries) places.emplace(child + '.' + named.key, named.where);
       } else if (entry.key.find('.') == std::string::npos && schema_.find_section(child) != nullptr) {
         places.emplace(child, entry.where);
         section(child, entry.where, entry.value);
@@ -144,15 +146,24 @@ class Validation {
 
 }  // namespace
 
-CheckedConfig load_config(const std::string& file, const std::vector<std::string>& overrides, const Schema& schema) {
+ConfigNode read_with_overrides(const std::string& file, const std::vector<std::string>& overrides,
+                               const Schema& schema) {
   ConfigNode root = read_config(file);
-  Validation validation(schema);
   if (root.kind == ConfigNode::Kind::mapping)
     for (const std::string& text : overrides) apply_override(root, text, schema);
-  validation.check_version(root, file);
+  Validation(schema).check_version(root, file);
+  return root;
+}
+
+CheckedConfig check_config(const ConfigNode& root, const std::string& file, const Schema& schema) {
+  Validation validation(schema);
   validation.section("", {file, 0}, root);
   validation.add_defaults();
   return {std::move(validation.values), std::move(validation.places)};
+}
+
+CheckedConfig load_config(const std::string& file, const std::vector<std::string>& overrides, const Schema& schema) {
+  return check_config(read_with_overrides(file, overrides, schema), file, schema);
 }
 
 }  // namespace grainvdb

@@ -12,6 +12,8 @@
 #include "pipeline/resolved.hpp"
 #include "pipeline/scale_keys.hpp"
 #include "pipeline/schema.hpp"
+#include "pipeline/species_keys.hpp"
+#include "pipeline/species_stages.hpp"
 #include "pipeline/trace_schema.hpp"
 #include "pipeline/wall_schema.hpp"
 
@@ -116,6 +118,7 @@ void check_together(const Pipeline& p, const Schema& schema) {
                        {}});
   check_box(p, "select.region", p.select.region);
   check_box(p, "region", p.region);
+  check_species(p);
   check_walls(p);
 }
 
@@ -142,8 +145,10 @@ Location Pipeline::location(const std::string& key) const {
 
 Pipeline load_pipeline(const std::string& file, const std::vector<std::string>& overrides,
                        const StageRegistry& registry) {
-  const Schema schema = make_schema(registry);
-  CheckedConfig config = load_config(file, overrides, schema);
+  const Schema without_species = make_schema(registry);
+  const ConfigNode root = read_with_overrides(file, overrides, without_species);
+  const Schema schema = make_schema(with_species(registry, with_species_of(root, file, without_species)));
+  CheckedConfig config = check_config(root, file, schema);
   if (!config.values.contains("output.fields")) config.values.erase("output.formats");
 
   Pipeline pipeline;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bin/half_step.hpp"
+#include "pipeline/species.hpp"
 
 namespace grainvdb {
 namespace {
@@ -40,7 +41,7 @@ void use_forces_of_run(const Pipeline& pipeline, Frame& frame) {
 Material make_material(Frame frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted) {
   Material material;
   use_forces_of_run(pipeline, frame);
-  material.branches = make_branch_sets(frame, pipeline, wanted);
+  material.branches = make_branch_sets(frame, pipeline, species_of_particles(frame, pipeline.species), wanted);
   material.file = std::move(frame.file);
   material.step = frame.step;
   material.box = frame.box;

@@ -28,7 +28,7 @@ void apply_selection(const Selection& selection, const Box& box, Particles& part
 void use_forces_of_run(const Pipeline& pipeline, Frame& frame);
 
 /// The material by the pipeline's selection and walls, with the sets of half branches that are wanted. Throws
-/// InputError for contacts that do not fit the particles.
+/// InputError for contacts that do not fit the particles, and for a particle that belongs to two species.
 Material make_material(Frame frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted);
 
 }  // namespace grainvdb

@@ -96,7 +96,7 @@ void add_sweep(const Plan& plan, const Pipeline& pipeline, std::size_t sweep, Me
       if (groups.kept.contains(m->name)) kept += 8.0 * m->channels;
   }
   if (columns.has(Column::contacts) || columns.has(Column::wall_contacts)) {
-    contact += 2 * half_branch;
+    contact += 2 * (half_branch + (pipeline.species.empty() ? 0 : sizeof(int)));
     take_larger(model.per_contact_read, contact_bytes(pipeline));
   }
   // Forces have corrected the contacts, and are gone, before there are values.

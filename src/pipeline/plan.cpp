@@ -11,6 +11,7 @@
 
 #include "bin/half_step.hpp"
 #include "pipeline/number.hpp"
+#include "pipeline/species_stages.hpp"
 #include "pipeline/text.hpp"
 
 namespace grainvdb {
@@ -66,7 +67,8 @@ class StageOrder {
                          did_you_mean(field, names)});
     }
     if (const auto conflict = stage->conflict ? stage->conflict(pipeline_.stages) : std::nullopt) {
-      const std::string key = "stages." + field + "." + conflict->option;
+      const std::string key =
+          "stages." + (stage->species_of.empty() ? field : stage->species_of) + "." + conflict->option;
       throw ConfigError({pipeline_.location(key),
                          "the options of stage " + quote_text(field) + " do not go together",
                          conflict->option + " " + conflict->found,
@@ -293,7 +295,9 @@ bool tells_walls(const std::set<BranchKind>& kinds) {
   return kinds.contains(BranchKind::outside_walls) || kinds.contains(BranchKind::at_walls);
 }
 
-Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
+namespace {
+
+Plan plan_of_stages(const Pipeline& pipeline, const StageRegistry& registry) {
   if (computed_fields(pipeline).empty()) {  // measurements of frames alone
     Plan nothing;
     for (const Stage& stage : registry.stages()) nothing.not_needed.push_back(stage.name);
@@ -323,6 +327,7 @@ Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
   for (Sweep& sweep : plan.sweeps)
     if (!pipeline.select.types.empty() || (tells_walls(sweep.branch_kinds) && !pipeline.walls.types.empty()))
       sweep.columns |= Column::type;
+  for (Sweep& sweep : plan.sweeps) sweep.columns |= columns_of(pipeline.species);
   if (!pipeline.input.wall_contacts.files.empty())
     for (Sweep& sweep : plan.sweeps) need_wall_contacts(pipeline, sweep);
   if (const auto& half_step = pipeline.input.contacts.half_step)
@@ -340,6 +345,16 @@ Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
   for (const Stage& stage : registry.stages())
     if (std::find(plan.stages.begin(), plan.stages.end(), &stage) == plan.stages.end())
       plan.not_needed.push_back(stage.name);
+  return plan;
+}
+
+}  // namespace
+
+Plan make_plan(const Pipeline& pipeline, const StageRegistry& registry) {
+  if (pipeline.species.empty()) return plan_of_stages(pipeline, registry);
+  auto all = std::make_shared<const StageRegistry>(with_species(registry, pipeline));
+  Plan plan = plan_of_stages(pipeline, *all);
+  plan.with_species = std::move(all);
   return plan;
 }
 

@@ -42,18 +42,34 @@ std::string print(const std::vector<T>& items) {
   return '[' + result + ']';
 }
 
-std::string print(const ConfigItem& item) {
+std::string print_entry(const ConfigItem& item) {
   std::string keys;
   for (const auto& [name, value] : item.values)
     keys += (keys.empty() ? "" : ", ") + name + ": " + std::visit([](const auto& v) { return print(v); }, value);
-  return '{' + item.kind + ": {" + keys + "}}";
+  return print(item.kind) + ": {" + keys + '}';
+}
+
+std::string print(const ConfigItem& item) {
+  return '{' + print_entry(item) + '}';
+}
+
+std::string print_named(const ConfigValue& value) {
+  std::string entries;
+  for (const ConfigItem& item : std::get<std::vector<ConfigItem>>(value))
+    entries += (entries.empty() ? "" : ", ") + print_entry(item);
+  return '{' + entries + '}';
+}
+
+std::string print_value(const KeyInfo& key, const ConfigValue& value) {
+  if (key.type == ValueType::named_items) return print_named(value);
+  return std::visit([](const auto& v) { return print(v); }, value);
 }
 
 void print_section(const Schema& schema, const std::map<std::string, ConfigValue>& values, const std::string& section,
                    const std::string& indent, std::string& out) {
   for (const KeyInfo& key : schema.keys)
     if (const auto it = values.find(key.path()); key.section == section && it != values.end())
-      out += indent + key.name + ": " + std::visit([](const auto& v) { return print(v); }, it->second) + '\n';
+      out += indent + key.name + ": " + print_value(key, it->second) + '\n';
   for (const SectionInfo& child : schema.sections) {
     if (child.parent() != section) continue;
     std::string inside;

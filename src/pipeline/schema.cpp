@@ -17,6 +17,7 @@
 #include "pipeline/option_keys.hpp"
 #include "pipeline/reduced_keys.hpp"
 #include "pipeline/scale_keys.hpp"
+#include "pipeline/species_keys.hpp"
 #include "pipeline/text.hpp"
 #include "pipeline/trace_schema.hpp"
 #include "pipeline/unsaid_keys.hpp"
@@ -123,9 +124,12 @@ void add_output(Schema& schema, const StageRegistry& registry) {
   schema.sections.push_back({"output", "What to write; needed where nothing is traced or measured.", false, true});
   std::vector<std::string> names;
   for (const Stage& stage : registry.stages()) names.push_back(stage.name);
-  schema.keys.push_back(texts_key(
+  auto fields = texts_key(
       "output", "fields", "Fields, in the order in which they are written; needed unless 'reduced' alone is given.",
-      names, [](Pipeline& p, const ConfigValue& v) { p.fields = std::get<std::vector<std::string>>(v); }));
+      names, [](Pipeline& p, const ConfigValue& v) { p.fields = std::get<std::vector<std::string>>(v); });
+  fields.hint = hint_at_species(registry);
+  fields.name_pattern = pattern_of_species(registry);
+  schema.keys.push_back(fields);
   std::vector<std::string> formats;
   for (const SinkInfo& sink : sink_registry()) formats.push_back(sink.name);
   auto format = texts_key("output", "formats", "File formats.", formats,
@@ -138,6 +142,7 @@ void add_output(Schema& schema, const StageRegistry& registry) {
 void add_stages(Schema& schema, const StageRegistry& registry) {
   schema.sections.push_back({"stages", "Options of stages."});
   for (const Stage& stage : registry.stages()) {
+    if (!stage.species_of.empty()) continue;
     schema.sections.push_back({"stages." + stage.name, "Options of " + stage.name + ": " + stage.description});
     for (const OptionInfo& option : stage.options)
       schema.keys.push_back(option_key("stages." + stage.name, option,
@@ -200,14 +205,19 @@ std::string range_of(const KeyInfo& key) {
   return text.str();
 }
 
+// "{point, normal}"
+std::string keys_of(const ItemKind& kind) {
+  std::string text = "{";
+  for (std::size_t n = 0; n < kind.keys.size(); ++n) text += (n == 0 ? "" : ", ") + kind.keys[n].name;
+  return text + '}';
+}
+
 // "a list of plane: {point, normal}, cylinder: {...} or ..."
 std::string list_of_kinds(const KeyInfo& key) {
   std::string text = "a list of";
   for (std::size_t k = 0; k < key.kinds.size(); ++k) {
     const ItemKind& kind = key.kinds[k];
-    text += (k == 0 ? " " : k + 1 < key.kinds.size() ? ", " : " or ") + kind.name + ": {";
-    for (std::size_t n = 0; n < kind.keys.size(); ++n) text += (n == 0 ? "" : ", ") + kind.keys[n].name;
-    text += '}';
+    text += (k == 0 ? " " : k + 1 < key.kinds.size() ? ", " : " or ") + kind.name + ": " + keys_of(kind);
   }
   return text;
 }
@@ -266,6 +276,7 @@ Schema make_schema(const StageRegistry& registry) {
   add_contact_keys(schema);
   add_half_step_keys(schema);
   add_selection(schema);
+  add_species(schema);
   add_walls(schema);
   add_method(schema);
   add_scale_keys(schema);
@@ -298,6 +309,8 @@ std::string accepted(const KeyInfo& key) {
       return "a list of places, each [x, y, z]" + range_of(key);
     case ValueType::items:
       return list_of_kinds(key);
+    case ValueType::named_items:
+      return "sections by name, each with " + keys_of(key.kinds.at(0));
     case ValueType::frame_range:
       return "a frame number or first:end:step, e.g. 0, 10:, -5:, ::2 or 10:50:2";
     case ValueType::window:

@@ -25,6 +25,7 @@ enum class ValueType {
   integers,
   numbers,
   items,        ///< a list of sections, each of one of several kinds
+  named_items,  ///< sections of one kind by names that the user chooses
   points,       ///< a list of lists of three numbers
   frame_range,  ///< "3", "a:b" or "a:b:c"; kept as text
   window        ///< the text "all" or "none", or a number of frames
@@ -32,12 +33,13 @@ enum class ValueType {
 
 struct ConfigItem;
 /// A value of a pipeline file; which alternative follows from the type of its key.
-using ConfigValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>,
-                                 std::vector<std::int64_t>, std::vector<double>, std::vector<Vec3>, std::vector<ConfigItem>>;
+using ConfigValue =
+    std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>, std::vector<std::int64_t>,
+                 std::vector<double>, std::vector<Vec3>, std::vector<ConfigItem>>;
 
-/// A section in a list of sections.
+/// A section in a list of sections, or among named ones.
 struct ConfigItem {
-  std::string kind;
+  std::string kind;                                         ///< or its name, where the user chooses it
   std::vector<std::pair<std::string, ConfigValue>> values;  ///< by name, defaults filled in
   /// nullptr where there is none of that name.
   const ConfigValue* find(const std::string& name) const;
@@ -54,6 +56,8 @@ struct KeyInfo {
   bool required = false;  ///< wherever its section is given
   std::optional<ConfigValue> default_value{};
   std::vector<std::string> choices{};  ///< of texts; empty: anything
+  std::string name_pattern{};          ///< for the JSON schema: a regular expression of names of sections that the user
+                               ///< chooses, or of texts beside the choices that the file may define elsewhere
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   bool above_minimum = false;  ///< the minimum itself is not allowed
@@ -61,7 +65,7 @@ struct KeyInfo {
   std::size_t fewest = 1;  ///< items of a list
   std::size_t most = std::numeric_limits<std::size_t>::max();
   bool one_for_all = false;       ///< of a list of fixed length: one number may stand for all items
-  std::vector<ItemKind> kinds{};  ///< of the items of a list of sections
+  std::vector<ItemKind> kinds{};  ///< of the items of a list of sections; one for named sections
   std::string hint{};             ///< added to errors about this key
   std::function<void(Pipeline&, const ConfigValue&)> apply{};
 

@@ -9,6 +9,7 @@
 
 #include "grainvdb/tracer_sink.hpp"
 #include "pipeline/key_builders.hpp"
+#include "pipeline/species_keys.hpp"
 
 namespace grainvdb {
 namespace {
@@ -128,6 +129,8 @@ void add_record(Schema& schema, const StageRegistry& registry) {
   auto record =
       texts_key("trace", "record", "Fields that are recorded along the way.", fields,
                 [](Pipeline& p, const ConfigValue& v) { trace_of(p).record = std::get<std::vector<std::string>>(v); });
+  record.hint = hint_at_species(registry);
+  record.name_pattern = pattern_of_species(registry);
   record.fewest = 0;
   record.default_value = std::vector<std::string>{};
   schema.keys.push_back(record);

@@ -54,6 +54,7 @@ Material first_material(const Pipeline& pipeline, const Plan& plan, FrameSource&
     branches = all_branch_kinds(plan);
   }
   if (!pipeline.select.types.empty()) columns |= Column::type;
+  columns |= columns_of(pipeline.species);
   for (const std::size_t k : frames)
     if (auto material =
             unless_bad(pipeline.input, [&] { return make_material(source.read(k, columns), pipeline, branches); }))
