@@ -28,6 +28,7 @@ std::string joined(const Json& parts, const char* between, std::string (*text)(c
 
 // What a value may be, from its part of the schema.
 std::string type_text(const Json& value) {
+  if (value.contains("title")) return value["title"].get<std::string>();
   if (value.contains("const")) return value["const"].get<std::string>();
   if (value.contains("enum"))
     return joined(value["enum"], " | ", [](const Json& name) { return name.get<std::string>(); });
@@ -43,6 +44,8 @@ std::string type_text(const Json& value) {
       keys += (keys.empty() ? "" : ", ") + name + ": " + type_text(inside);
     return '{' + keys + '}';
   }
+  if (value.contains("additionalProperties") && value["additionalProperties"].is_object())
+    return "{NAME: " + type_text(value["additionalProperties"]) + ", ...}";
   const auto type = value.value("type", std::string());
   return type == "array" ? "list of " + type_text(value["items"]) : type;
 }

@@ -18,8 +18,10 @@ Json number_schema(const KeyInfo& key, const char* type) {
 Json text_schema(const KeyInfo& key) {
   Json json{{"type", "string"}, {"minLength", 1}};
   if (key.choices.empty()) return json;
-  if (!key.name_pattern.empty())
-    return {{"type", "string"}, {"anyOf", {{{"enum", key.choices}}, {{"pattern", key.name_pattern}}}}};
+  if (!key.name_pattern.empty()) {
+    const Json elsewhere{{"title", "FIELD_SPECIES"}, {"pattern", key.name_pattern}};
+    return {{"type", "string"}, {"anyOf", {{{"enum", key.choices}}, elsewhere}}};
+  }
   json["enum"] = key.choices;
   return json;
 }

@@ -192,8 +192,9 @@ TEST(Species, TwoSublattices) {
   w.field("phi").for_each_active([&](const Coord& c) {
     const double phi = w.field("phi_even").at(c);
     volume += h * h * h * phi;
-    const Coord next((c.x() + 1 + 2) % 16 - 1, c.y(), c.z());  // the box begins at voxel -1
-    EXPECT_NEAR(w.field("phi_odd").at(next), small * small * small * phi, 2.01 * e * phi);
+    const Coord next{(c.x + 1 + 2) % 16 - 1, c.y, c.z};  // the box begins at voxel -1
+    const double expected = small * small * small * phi;
+    EXPECT_NEAR(w.field("phi_odd").at(next), expected, 2.01 * e * expected);
     EXPECT_NEAR(w.field("mean_diameter_even").at(c), 1, 2.01 * e);
     EXPECT_NEAR(w.field("mean_diameter_odd").at(c), small, 2.01 * e * small);
     for (int k = 0; k < 3; ++k) {
