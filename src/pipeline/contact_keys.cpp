@@ -105,9 +105,11 @@ void add_pair_contact_keys(Schema& schema) {
 
 void add_wall_contact_keys(Schema& schema) {
   const std::string section = "input.wall_contacts";
-  schema.sections.push_back({section,
-                             "Dumps of contacts with walls that are no grains, such as meshes, for the contact stress "
-                             "and wall_force. Give compute or columns."});
+  schema.sections.push_back(
+      {section,
+       "Dumps of contacts with walls that are no grains, such as meshes, for the contact stress "
+       "and wall_force. Give compute or columns, or none of these for MercuryDPM .fstat files and "
+       "columns named id fx fy fz cx cy cz."});
   auto files = texts_key(section, "files", "Dumps of such contacts, as input.particles.", {},
                          [](Pipeline& p, const ConfigValue& v) { p.input.wall_contacts.files = input_paths(p, v); });
   files.required = true;

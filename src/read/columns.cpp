@@ -56,13 +56,13 @@ Location stated_at(const InputSpec& spec, std::string key) {
   }
 }
 
-void check_ids(const std::vector<std::int64_t>& ids, std::string_view column, std::size_t first_line,
+void check_ids(const std::vector<std::int64_t>& ids, std::string_view column, const Table& table,
                const std::string& file) {
   constexpr std::int64_t limit = std::int64_t{1} << 53;
   const auto bad = std::find_if(ids.begin(), ids.end(), [](std::int64_t id) { return id < 1 || id >= limit; });
   if (bad == ids.end()) return;
   const auto row = static_cast<std::size_t>(bad - ids.begin());
-  throw InputError({{file, first_line + row},
+  throw InputError({{file, table.line(row)},
                     "bad value in column " + std::string(column),
                     std::to_string(*bad),
                     "an id from 1 to 2^53 - 1",

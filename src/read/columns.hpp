@@ -47,9 +47,9 @@ class ColumnFinder {
 /// Where a key of the input stands in the pipeline file, or the nearest section above it that is known.
 Location stated_at(const InputSpec& spec, std::string key);
 
-/// Ids must be positive and, as some codes keep them as doubles, below 2^53. Throws InputError for the first that is
-/// not.
-void check_ids(const std::vector<std::int64_t>& ids, std::string_view column, std::size_t first_line,
+/// Ids of a table must be positive and, as some codes keep them as doubles, below 2^53. Throws InputError for the first
+/// that is not.
+void check_ids(const std::vector<std::int64_t>& ids, std::string_view column, const Table& table,
                const std::string& file);
 
 }  // namespace grainvdb

@@ -53,12 +53,12 @@ ContactNames plain_names(const ColumnFinder& finder) {
 
 /// The order of ascending (id1, id2). Throws InputError for the first contact of a particle with itself, or else the
 /// least pair that comes twice, in whichever order of its ids.
-RowOrder order_of_pairs(const std::vector<std::int64_t>& id1, const std::vector<std::int64_t>& id2,
-                        std::size_t first_line, const std::string& file) {
+RowOrder order_of_pairs(const std::vector<std::int64_t>& id1, const std::vector<std::int64_t>& id2, const Table& table,
+                        const std::string& file) {
   std::vector<std::int64_t> low(id1.size()), high(id1.size());
   for (std::size_t i = 0; i < id1.size(); ++i) {
     if (id1[i] == id2[i])
-      throw InputError({{file, first_line + i},
+      throw InputError({{file, table.line(i)},
                         "a contact of a particle with itself",
                         "id " + std::to_string(id1[i]) + " twice",
                         "two different ids",
@@ -71,10 +71,10 @@ RowOrder order_of_pairs(const std::vector<std::int64_t>& id1, const std::vector<
   for (std::size_t i = 1; i < low.size(); ++i) {
     const std::size_t a = row(i - 1), b = row(i);
     if (low[a] == low[b] && high[a] == high[b])
-      throw InputError({{file, first_line + b},
+      throw InputError({{file, table.line(b)},
                         "the contact of particles " + std::to_string(low[b]) + " and " + std::to_string(high[b]) +
                             " comes twice in one frame",
-                        "it also on line " + std::to_string(first_line + a),
+                        "it also on line " + std::to_string(table.line(a)),
                         "each pair once",
                         {}});
   }
@@ -112,9 +112,9 @@ ContactLayout contact_layout(const FrameHeader& header, const std::string& file,
 
 Contacts make_contacts(const ContactLayout& layout, Table table, const FrameHeader& header, const std::string& file) {
   std::vector<std::int64_t>&id1 = table.whole[layout.id1], &id2 = table.whole[layout.id2];
-  check_ids(id1, header.columns[layout.request.whole[layout.id1]], table.first_line, file);
-  check_ids(id2, header.columns[layout.request.whole[layout.id2]], table.first_line, file);
-  reorder(table, order_of_pairs(id1, id2, table.first_line, file));
+  check_ids(id1, header.columns[layout.request.whole[layout.id1]], table, file);
+  check_ids(id2, header.columns[layout.request.whole[layout.id2]], table, file);
+  reorder(table, order_of_pairs(id1, id2, table, file));
 
   Contacts contacts;
   contacts.force = total_force(table, layout.forces);

@@ -123,7 +123,7 @@ DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
   leave_out(files.contacts, particle_files);
   leave_out(files.wall_contacts, particle_files);
   contacts_.emplace(std::move(files.contacts), RowKind::contacts, spec_, counters_);
-  wall_contacts_.emplace(std::move(files.wall_contacts), RowKind::contacts, spec_, counters_);
+  wall_contacts_.emplace(std::move(files.wall_contacts), RowKind::wall_contacts, spec_, counters_);
 
   units_ = choose_units(spec, particles_.units());
   for (const FrameRecord& record : particles_.frames()) {
@@ -140,8 +140,10 @@ DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
 
 std::vector<std::pair<std::string, std::uintmax_t>> DumpDirectory::files() const {
   std::vector<std::pair<std::string, std::uintmax_t>> all;
+  std::set<FileIdentity> met;  // contacts of both sorts may be in one file
   for (const DumpSeries* series : {&particles_, &*contacts_, &*wall_contacts_})
-    for (const InputFile& file : series->files()) all.emplace_back(file.path, file.size);
+    for (const InputFile& file : series->files())
+      if (met.insert(file.identity).second) all.emplace_back(file.path, file.size);
   return all;
 }
 

@@ -13,7 +13,11 @@
 namespace grainvdb {
 
 /// What the rows of a frame are.
-enum class RowKind { particles, contacts };
+enum class RowKind {
+  particles,
+  contacts,      ///< between particles; or with walls, which text dumps do not tell apart
+  wall_contacts  ///< with walls that are no particles
+};
 
 /// What a frame does not say of itself, so that the input has to.
 struct Unsaid {
@@ -44,17 +48,23 @@ struct TableRequest {
   std::vector<std::size_t> whole;
 };
 
-/// The converted columns of a frame, in the order of the request. Row i stands on line first_line + i.
+/// The converted columns of a frame, in the order of the request.
 struct Table {
   std::size_t rows = 0;
   std::size_t first_line = 0;
   std::vector<std::vector<double>> real;
   std::vector<std::vector<std::int64_t>> whole;
+  std::vector<std::size_t> lines{};  ///< of the rows, where these are not those from first_line on
+
+  std::size_t line(std::size_t row) const { return lines.empty() ? first_line + row : lines[row]; }
 };
 
 class DumpFile {
  public:
   virtual ~DumpFile() = default;
+
+  /// Before anything is read: which rows a file gives that holds those of several kinds. Others give what they have.
+  virtual void choose(RowKind /*wanted*/) {}
 
   /// Reads the header of the frame that begins here; nothing at the end of the file. Throws InputError.
   virtual std::optional<FrameHeader> next_header() = 0;

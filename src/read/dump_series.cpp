@@ -15,7 +15,15 @@ constexpr double spread = 1.25;
 constexpr std::uintmax_t small_file = std::uintmax_t{1} << 14;
 
 const char* plural(RowKind kind) {
-  return kind == RowKind::particles ? "particles" : "contacts";
+  switch (kind) {
+    case RowKind::particles:
+      return "particles";
+    case RowKind::contacts:
+      return "contacts";
+    case RowKind::wall_contacts:
+      return "contacts with walls";
+  }
+  return "";
 }
 
 }  // namespace
@@ -28,8 +36,14 @@ bool DumpSeries::open(std::size_t file) {
   open_file_.reset();
   dump_ = open_dump(files_[file].path, counters_);
   if (!dump_.dump) return false;
+  dump_.dump->choose(kind_);
   open_file_ = file;
   return true;
+}
+
+/// Text dumps do not say that their contacts are with walls.
+bool DumpSeries::is_wanted(const FrameHeader& header) const {
+  return header.kind == kind_ || (kind_ == RowKind::wall_contacts && header.kind == RowKind::contacts);
 }
 
 /// The next header of the open file, with what the input says in its place.
@@ -102,7 +116,7 @@ bool DumpSeries::index_complete_frames(std::size_t file) {
   try {
     if (!open(file)) return !input.named;
     std::optional<FrameHeader> header = next_header();
-    while (header && header->kind == kind_ && dump_.dump->skip_rows()) {
+    while (header && is_wanted(*header) && dump_.dump->skip_rows()) {
       const bool is_last = dump_.dump->at_end();
       if (is_last && input.state == InputFile::State::growing) return false;
       note_units(*header, input.path);
@@ -113,7 +127,7 @@ bool DumpSeries::index_complete_frames(std::size_t file) {
       }
       header = next_header();
     }
-    return header && header->kind != kind_ && !input.named;
+    return header && !is_wanted(*header) && !input.named;
   } catch (const InputError&) {
     return false;
   }
@@ -146,7 +160,7 @@ void DumpSeries::index_file(std::size_t file, std::map<FileClass, double>& bytes
   bool whole = true;
   std::optional<FrameHeader> header;
   while (attempt(input, [&] { header = next_header(); }) && header) {
-    if (header->kind != kind_) {
+    if (!is_wanted(*header)) {
       if (input.named) refuse_kind(*header, input.path);
       return;
     }
@@ -241,7 +255,7 @@ std::vector<std::string> DumpSeries::first_columns() {
       continue;
     }
     const std::optional<FrameHeader> header = next_header();
-    if (header && header->kind == kind_) return header->columns;
+    if (header && is_wanted(*header)) return header->columns;
     if (header && files_[file].named) refuse_kind(*header, files_[file].path);
   }
   return {};
@@ -253,7 +267,7 @@ const FrameHeader& DumpSeries::go_to(std::size_t k) {
   if (open_file_ != frame.file && !open(frame.file)) refuse_unrecognised(path, dump_);
   dump_.dump->seek(frame.start);
   std::optional<FrameHeader> header = next_header();
-  if (!header || header->step != frame.step || header->rows != frame.rows || header->kind != kind_)
+  if (!header || header->step != frame.step || header->rows != frame.rows || !is_wanted(*header))
     throw InputError({{path, frame.start.line},
                       "the file has changed since it was indexed",
                       {},

@@ -1,5 +1,5 @@
 #pragma once
-/// The frames of all dump files of one kind, particles or contacts, in ascending order of step.
+/// The frames of all dump files of one kind, particles or contacts of either sort, in ascending order of step.
 #include <cstddef>
 #include <exception>
 #include <map>
@@ -78,6 +78,7 @@ class DumpSeries {
   using FileClass = std::pair<std::size_t, Compression>;
 
   bool open(std::size_t file);
+  bool is_wanted(const FrameHeader& header) const;
   std::optional<FrameHeader> next_header();
   template <class Read>
   bool attempt(const InputFile& input, Read read);

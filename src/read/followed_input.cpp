@@ -24,15 +24,24 @@ struct FollowedInput::Seen {
   InputSpec spec;
   std::map<FileIdentity, Look> files;
 
-  void judge(std::vector<InputFile>& now) {
-    for (InputFile& file : now) {
-      Look& before = files[file.identity];
-      const bool same = before.size == file.size && before.changed == file.changed;
-      if (!same) before = {file.size, file.changed, false};
-      file.state = !same          ? InputFile::State::growing
-                   : before.whole ? InputFile::State::known
-                                  : InputFile::State::settled;
+  void judge(InputFiles& now) {
+    std::map<FileIdentity, InputFile::State> judged;  // a file may hold contacts of both sorts
+    for (std::vector<InputFile>* list : {&now.particles, &now.contacts, &now.wall_contacts})
+      for (InputFile& file : *list) {
+        const auto [state, is_new] = judged.try_emplace(file.identity);
+        if (is_new) state->second = judge(file);
+        file.state = state->second;
+      }
+  }
+
+ private:
+  InputFile::State judge(const InputFile& file) {
+    Look& before = files[file.identity];
+    if (before.size != file.size || before.changed != file.changed) {
+      before = {file.size, file.changed, false};
+      return InputFile::State::growing;
     }
+    return before.whole ? InputFile::State::known : InputFile::State::settled;
   }
 };
 
@@ -51,9 +60,7 @@ std::unique_ptr<FrameSource> FollowedInput::look(std::optional<std::int64_t> las
   std::unique_ptr<DumpDirectory> dumps;
   try {
     InputFiles files = find_files(seen_->spec);
-    seen_->judge(files.particles);
-    seen_->judge(files.contacts);
-    seen_->judge(files.wall_contacts);
+    seen_->judge(files);
     dumps = std::make_unique<DumpDirectory>(seen_->spec, std::move(files));
     dumps->keep_frames_with_contacts();
     if (last_step) dumps->keep_frames_up_to(*last_step);

@@ -14,7 +14,6 @@ namespace grainvdb {
 namespace {
 
 constexpr char mark = '#';
-constexpr std::size_t ids = 2;  ///< the first columns of the table; then come three of the force
 const std::string fstat_label = "contacts";
 
 const std::vector<std::string>& written_columns() {
@@ -25,16 +24,28 @@ const std::vector<std::string>& written_columns() {
 enum Written : std::size_t {
   place_p = 1,
   place_i = 2,
+  contact_point = 3,
   normal_force = 8,
   tangential_force = 9,
   normal = 10,
   tangent = 13
 };
-const TableRequest& needed_columns() {
-  static const TableRequest needed{
+TableRequest needed_columns(bool with_walls) {
+  TableRequest needed{
       {normal_force, tangential_force, normal, normal + 1, normal + 2, tangent, tangent + 1, tangent + 2},
       {place_p, place_i}};
+  if (with_walls)
+    for (std::size_t axis = 0; axis < 3; ++axis) needed.real.push_back(contact_point + axis);
   return needed;
+}
+
+/// What a contact has: ids, then the force and, with a wall, the contact point.
+std::vector<std::string> given_columns(bool with_walls) {
+  if (with_walls) return {"id", "fx", "fy", "fz", "cx", "cy", "cz"};
+  return {"id1", "id2", "fx", "fy", "fz"};
+}
+std::size_t id_count(bool with_walls) {
+  return with_walls ? 1 : 2;
 }
 
 /// The numbers of a line behind its mark; nothing when it is another line.
@@ -43,9 +54,9 @@ std::optional<std::vector<double>> marked_numbers(std::string_view line) {
   return mercury::numbers(line.substr(1));
 }
 
-/// Which rows are contacts of two particles, each counted once: of the two lines of a pair that with the lower place
-/// first. Throws InputError for negative first places and lines that come twice.
-std::vector<std::size_t> counted_once(const Table& rows, const std::string& file) {
+/// Which rows are contacts of the wanted kind, in ascending order of P and I, each counted once: of the two lines of a
+/// pair that with the lower place first. Throws InputError for a negative P and lines that come twice.
+std::vector<std::size_t> counted_once(const Table& rows, bool with_walls, const std::string& file) {
   const std::vector<std::int64_t>&p = rows.whole[0], &i = rows.whole[1];
   using Pair = std::tuple<std::int64_t, std::int64_t, std::size_t>;
   std::vector<Pair> pairs;
@@ -56,7 +67,7 @@ std::vector<std::size_t> counted_once(const Table& rows, const std::string& file
                         std::to_string(p[row]),
                         "a number of 0 or more",
                         {}});
-    if (i[row] >= 0) pairs.emplace_back(p[row], i[row], row);
+    if ((i[row] < 0) == with_walls) pairs.emplace_back(p[row], i[row], row);
   }
   std::sort(pairs.begin(), pairs.end());
   const auto same = [](const Pair& a, const Pair& b) {
@@ -64,12 +75,13 @@ std::vector<std::size_t> counted_once(const Table& rows, const std::string& file
   };
   const auto twice = std::adjacent_find(pairs.begin(), pairs.end(), same);
   if (twice != pairs.end())
-    throw InputError({{file, rows.first_line + std::get<2>(twice[1])},
-                      "the contact of " + std::to_string(std::get<0>(*twice)) + " with " +
-                          std::to_string(std::get<1>(*twice)) + " comes twice in one frame",
-                      "it also on line " + std::to_string(rows.first_line + std::get<2>(*twice)),
-                      "each pair once in each order",
-                      "Particles that touch each other through two sides of a periodic box are not supported"});
+    throw InputError(
+        {{file, rows.first_line + std::get<2>(twice[1])},
+         "the contact of " + std::to_string(std::get<0>(*twice)) + " with " + std::to_string(std::get<1>(*twice)) +
+             " comes twice in one frame",
+         "it also on line " + std::to_string(rows.first_line + std::get<2>(*twice)),
+         with_walls ? "each contact with a wall once" : "each pair once in each order",
+         with_walls ? "" : "Particles that touch each other through two sides of a periodic box are not supported"});
   std::vector<std::size_t> counted;
   for (const auto& [first, second, row] : pairs) {
     const auto reverse = std::lower_bound(pairs.begin(), pairs.end(), Pair{second, first, 0});
@@ -122,9 +134,9 @@ std::optional<FrameHeader> MercuryFstat::next_header() {
   header.columns_line = lines_.line_number();
   comment_line();
   comment_line();
-  header.kind = RowKind::contacts;
+  header.kind = with_walls_ ? RowKind::wall_contacts : RowKind::contacts;
   header.step = mercury::first_step(lines_.file()) + static_cast<std::int64_t>(frame_++);
-  header.columns = {"id1", "id2", "fx", "fy", "fz"};
+  header.columns = given_columns(with_walls_);
 
   rows_ = end_ = lines_.position();
   complete_ = true;
@@ -147,23 +159,28 @@ bool MercuryFstat::skip_rows() {
 }
 
 Table MercuryFstat::read_rows(const TableRequest& request) {
-  const Table rows = RowReader(lines_, header_, fstat_label, needed_columns()).read();
-  const std::vector<std::size_t> counted = counted_once(rows, lines_.file());
+  const Table rows = RowReader(lines_, header_, fstat_label, needed_columns(with_walls_)).read();
+  const std::vector<std::size_t> counted = counted_once(rows, with_walls_, lines_.file());
+  const std::size_t ids = id_count(with_walls_);
   Table table{counted.size(), rows.first_line, {}, {}};
+  for (const std::size_t row : counted) table.lines.push_back(rows.line(row));
   for (const std::size_t column : request.whole) {
     if (column >= ids)
       throw InputError({{lines_.file(), header_.columns_line},
                         "forces stand for ids",
                         {},
-                        "id1 and id2",
-                        "Check input.contacts.columns in the pipeline file"});
+                        with_walls_ ? "id" : "id1 and id2",
+                        std::string("Check input.") + (with_walls_ ? "wall_contacts" : "contacts") +
+                            ".columns in the pipeline file"});
     std::vector<std::int64_t>& to = table.whole.emplace_back();
     for (const std::size_t row : counted) to.push_back(rows.whole[column][row] + 1);
   }
+  const double sign = with_walls_ ? -1 : 1;
   const auto value = [&](std::size_t column, std::size_t row) {
     if (column < ids) return static_cast<double>(rows.whole[column][row] + 1);
-    const std::size_t axis = column - ids;
-    return rows.real[0][row] * rows.real[2 + axis][row] + rows.real[1][row] * rows.real[5 + axis][row];
+    const std::size_t k = column - ids;
+    if (k >= 3) return rows.real[5 + k][row];
+    return sign * (rows.real[0][row] * rows.real[2 + k][row] + rows.real[1][row] * rows.real[5 + k][row]);
   };
   for (const std::size_t column : request.real) {
     std::vector<double>& to = table.real.emplace_back();

@@ -167,7 +167,7 @@ ParticleLayout particle_layout(const FrameHeader& header, const std::string& fil
 Particles make_particles(const ParticleLayout& layout, Table table, const FrameHeader& header,
                          const std::string& file) {
   const std::size_t n = table.rows;
-  check_ids(table.whole[layout.id], "id", table.first_line, file);
+  check_ids(table.whole[layout.id], "id", table, file);
   const RowOrder order = ascending(table.whole[layout.id]);
   check_unique(table.whole[layout.id], order, table.first_line, file);
   for (const std::optional<std::size_t>& column : {layout.radius, layout.mass, layout.density})

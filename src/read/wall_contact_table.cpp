@@ -24,6 +24,18 @@ WallContactNames names_in_compute(const ColumnFinder& finder, const std::vector<
           compute.names3("pos").value_or(Names3{})};
 }
 
+WallContactNames plain_wall_names(const ColumnFinder& finder) {
+  WallContactNames names{{}, {}, "id", {Names3{"fx", "fy", "fz"}, {}, {}}, {"cx", "cy", "cz"}};
+  if (!finder.has(names.id) || !finder.has_all(*names.force.total) || !finder.has_all(names.point))
+    throw InputError(
+        {finder.location(), "what the columns of the wall contact dump mean is not known", finder.names(),
+         "columns named id fx fy fz cx cy cz",
+         "Say it in the pipeline file: input.wall_contacts.compute lists the keywords of the LIGGGHTS compute "
+         "wall/gran/local that made the dump, or input.wall_contacts.columns gives the column names of id, point and "
+         "force (or normal_force and tangential_force)"});
+  return names;
+}
+
 WallContactNames names_in_map(const ColumnMap& columns) {
   const auto one = [&](const std::string& key) {
     const auto it = columns.find(key);
@@ -32,13 +44,13 @@ WallContactNames names_in_map(const ColumnMap& columns) {
   return {one("mesh"), one("triangle"), one("id"), force_names(columns), names3(columns, "point").value_or(Names3{})};
 }
 
-void check_particles(const std::vector<std::int64_t>& found, const std::vector<std::int64_t>& ids,
-                     std::size_t first_line, const std::string& file) {
+void check_particles(const std::vector<std::int64_t>& found, const std::vector<std::int64_t>& ids, const Table& table,
+                     const std::string& file) {
   const auto unknown = std::find_if(found.begin(), found.end(),
                                     [&](std::int64_t id) { return !std::binary_search(ids.begin(), ids.end(), id); });
   if (unknown == found.end()) return;
   throw InputError(
-      {{file, first_line + static_cast<std::size_t>(unknown - found.begin())},
+      {{file, table.line(static_cast<std::size_t>(unknown - found.begin()))},
        "a wall contact names a particle that the particle dump of this step lacks",
        "id " + std::to_string(*unknown),
        "an id of the particle dump",
@@ -69,11 +81,11 @@ RowOrder order_of_walls(const Table& table, const WallContactLayout& layout, con
   for (std::size_t i = 1; i < id.size(); ++i) {
     const std::size_t a = row(i - 1), b = row(i);
     if (id[a] == id[b] && rank[a] == rank[b])
-      throw InputError({{file, table.first_line + b},
+      throw InputError({{file, table.line(b)},
                         "the contact of particle " + std::to_string(id[b]) + " with triangle " +
                             std::to_string(triangle[b]) + " of mesh " + std::to_string(mesh[b]) +
                             " comes twice in one frame",
-                        "it also on line " + std::to_string(table.first_line + a),
+                        "it also on line " + std::to_string(table.line(a)),
                         "each contact once",
                         {}});
   }
@@ -105,15 +117,10 @@ void check_wall_contact_spec(const InputSpec& spec) {
 
 WallContactLayout wall_contact_layout(const FrameHeader& header, const std::string& file, const InputSpec& spec) {
   ColumnFinder finder(header, file);
-  if (spec.wall_contacts.compute.empty() && spec.wall_contacts.columns.empty())
-    throw InputError(
-        {finder.location(), "what the columns of the wall contact dump mean is not known", finder.names(),
-         "input.wall_contacts.compute or input.wall_contacts.columns",
-         "Say it in the pipeline file: compute lists the keywords of the LIGGGHTS compute wall/gran/local that made "
-         "the dump; columns gives the column names of id, point and force (or normal_force and tangential_force)"});
-  const WallContactNames names = spec.wall_contacts.columns.empty()
+  const WallContactNames names = !spec.wall_contacts.compute.empty()
                                      ? names_in_compute(finder, spec.wall_contacts.compute)
-                                     : names_in_map(spec.wall_contacts.columns);
+                                 : !spec.wall_contacts.columns.empty() ? names_in_map(spec.wall_contacts.columns)
+                                                                       : plain_wall_names(finder);
   MissingColumns missing(finder);
   missing.require(names.id, "id of the particle");
   missing.require(names.force);
@@ -133,8 +140,8 @@ WallContactLayout wall_contact_layout(const FrameHeader& header, const std::stri
 
 WallContacts make_wall_contacts(const WallContactLayout& layout, Table table, const FrameHeader& header,
                                 const std::string& file, const std::vector<std::int64_t>& ids) {
-  check_ids(table.whole[layout.id], header.columns[layout.request.whole[layout.id]], table.first_line, file);
-  check_particles(table.whole[layout.id], ids, table.first_line, file);
+  check_ids(table.whole[layout.id], header.columns[layout.request.whole[layout.id]], table, file);
+  check_particles(table.whole[layout.id], ids, table, file);
   reorder(table, order_of_walls(table, layout, file));
 
   WallContacts contacts;

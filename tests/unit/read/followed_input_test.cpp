@@ -93,6 +93,29 @@ TEST_F(FollowedInputTest, FramesWaitForTheirContacts) {
   EXPECT_EQ(count(), 3U);
 }
 
+// A file that is listed twice grows once: it must not be taken for one that has settled where it is met again.
+TEST_F(FollowedInputTest, AFileOfBothSortsOfContactsIsJudgedOnce) {
+  spec_.periodic = "none";
+  spec_.contacts.files = spec_.wall_contacts.files = {files_.path("n.fstat*")};
+  FollowedInput input(spec_);
+  const auto count = [&] {
+    const auto source = input.look();
+    return source ? source->frames().size() : 0;
+  };
+  const std::string rest_of_header = " 0 0 1 1 1\n# 1 1 0 0 0 0\n";
+  for (const std::string time : {"0", "1", "2"})
+    append("d", "1 " + time + " 0 0 0 1 1 1\n0 0 0 0 0 0 1 0 0 0 0 0 0 0\n");
+  append("n.fstat.0", "# 0 1\n# 0" + rest_of_header);
+  count();
+  EXPECT_EQ(count(), 1U);
+  append("n.fstat.1", "# 1 1\n# 0");
+  append("n.fstat.2", "# 2 1\n# 0" + rest_of_header);
+  EXPECT_EQ(count(), 1U);
+  append("n.fstat.1", rest_of_header);
+  count();
+  EXPECT_EQ(count(), 3U);
+}
+
 // Frames that were there must not get others before them.
 TEST_F(FollowedInputTest, FramesWaitForFilesBeforeThem) {
   append("d1", grains(10) + grains(20));

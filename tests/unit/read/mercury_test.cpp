@@ -127,7 +127,7 @@ TEST_F(Mercury, NeedsToBeToldWhatIsPeriodic) {
   expect_error<ConfigError>([&] { open_dumps(untold); }, {"input.periodic does not name axes", "xx"});
 }
 
-/// Walls have negative numbers; a fixed grain (here 2) has no line of its own.
+/// Walls have negative numbers, and none of the contacts between grains; a fixed grain (here 2) has no line of its own.
 TEST_F(Mercury, CountsEachContactOnce) {
   const std::string rows = contact("1", "0") + reverse_contact("0", "1") + contact("0", "-1") + contact("2", "1");
   const Frame frame = read_only_frame(spec(data_frame("0"), fstat_frame("0", rows)), Column::contacts);
@@ -136,6 +136,29 @@ TEST_F(Mercury, CountsEachContactOnce) {
   EXPECT_THAT(frame.contacts.force[0], ElementsAre(2, -2));
   EXPECT_THAT(frame.contacts.force[1], ElementsAre(-3, 3));
   EXPECT_TRUE(frame.contacts.point[0].empty());
+}
+
+/// Of walls n points from the grain into the wall: -(f_n n + f_t t) acts on the grain.
+TEST_F(Mercury, HasTheForcesOfWallsOnGrains) {
+  const std::string rows = std::string("0 1 -2 2 1.5 0.5 0.01 0 5 2 0 -1 0 1 0 0\n") + contact("0", "1") +
+                           reverse_contact("1", "0") + "0 1 -1 2 2 0 0.01 0 4 3 0 0 -1 -1 0 0\n";
+  InputSpec both = spec(data_frame("0"), fstat_frame("0", rows));
+  both.wall_contacts.files = both.contacts.files;
+  const auto source = open_dumps(both);
+  EXPECT_THAT(source->wall_contact_columns(), ElementsAre("id", "fx", "fy", "fz", "cx", "cy", "cz"));
+  const Frame frame = source->read(0, Column::contacts | Column::wall_contacts);
+  EXPECT_THAT(frame.contacts.id1, ElementsAre(1));
+  EXPECT_THAT(frame.wall_contacts.id, ElementsAre(2, 2));
+  const Columns3 force{{{-2, 3}, {5, 0}, {0, 4}}}, point{{{2, 2}, {1.5, 2}, {0.5, 0}}};
+  EXPECT_EQ(frame.wall_contacts.force, force);
+  EXPECT_EQ(frame.wall_contacts.point, point);
+  EXPECT_EQ(source->files().size(), 2U);  // the .fstat counts once
+
+  both.wall_contacts.files = {files_.write("twice.fstat", fstat_frame("0", contact("0", "-1") + contact("0", "-1")))};
+  expect_error<InputError>([&] { open_dumps(both)->read(0, Column::wall_contacts); },
+                           {"twice.fstat:5", "contact of 0 with -1 comes twice", "line 4"});
+  both.wall_contacts.files = {files_.write("far.fstat", fstat_frame("0", contact("0", "1") + contact("9", "-1")))};
+  expect_error<InputError>([&] { open_dumps(both)->read(0, Column::wall_contacts); }, {"far.fstat:5", "found id 10"});
 }
 
 TEST_F(Mercury, AFrameMayHaveNoContacts) {
@@ -170,7 +193,7 @@ TEST_F(Mercury, RefusesContactsThatCannotBeMeant) {
   expect_fstat_refused(fstat_frame("0", contact("0", "1") + contact("0", "1")),
                        {"name.fstat:5", "comes twice", "line 4"});
   expect_fstat_refused(fstat_frame("0", contact("-1", "1")), {"name.fstat:4", "-1"});
-  expect_fstat_refused(fstat_frame("0", contact("1", "1")), {"with itself"});
+  expect_fstat_refused(fstat_frame("0", contact("2", "0") + contact("1", "1")), {"name.fstat:5", "with itself"});
   expect_fstat_refused(fstat_frame("0", "0 0 1 0 0 0 0.01 0 nan 3 -1 0 0 0 1 0\n"), {"name.fstat:4", "nan", "f_n"});
   expect_fstat_refused(fstat_frame("0", "0 0 1 0 0 0\n"), {"name.fstat:4"});
   const std::string whole = fstat_frame("0", contact("0", "1"));

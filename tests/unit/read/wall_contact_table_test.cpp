@@ -150,7 +150,7 @@ TEST_F(WallContactTable, SpecificationsThatCannotBeMeantAreRefused) {
   with({}, {"input.wall_contacts.columns is incomplete", "expected id, point and either force"});
   spec_.wall_contacts.columns.clear();
   spec_.wall_contacts.compute.clear();
-  refuses(indexed(1, 12), {}, {"walls:9", "mean is not known", "compute wall/gran/local"});
+  refuses(indexed(1, 12), {}, {"walls:9", "mean is not known", "id fx fy fz cx cy cz", "compute wall/gran/local"});
 }
 
 TEST_F(WallContactTable, AMissingTimestepIsRefused) {
