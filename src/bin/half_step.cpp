@@ -17,6 +17,11 @@ namespace {
 // Dumps have six digits: a contact slides where its tangential force is this near to the friction limit.
 constexpr double sliding = 0.9999;
 
+/// What meets at a contact: m* and, which DampingLaw::rate does without, R* and the overlap.
+struct Meeting {
+  double mass = 0, radius = 0, overlap = 0;
+};
+
 double square(double x) {
   return x * x;
 }
@@ -44,13 +49,38 @@ class Correction {
       const double apart = place(axis, x[a][i]) - place(axis, x[a][j]);
       image |= has_image_[a] && std::abs(apart - n[a]) > 0.5 * frame_.box.length(axis);
     }
-    const double distance = std::sqrt(dot(n, n));
+    const double distance = normalise(n);
     if (distance == 0) return;
-    for (double& c : n) c /= distance;
-
     const double approach = along(i, n) - (image ? 0.0 : along(j, n));
-    const double change = 0.5 * damping(i, j, distance) * spec_.dt * approach;
-    Vec3 force{contacts.force[0][k], contacts.force[1][k], contacts.force[2][k]};
+    change_force(contacts.force, k, n, damping(meeting(i, j, distance)) * approach);
+  }
+
+  void correct_wall(std::size_t k) {
+    WallContacts& contacts = frame_.wall_contacts;
+    const std::size_t i = rows_.find(contacts.id[k]);
+    if (i == ParticleRows::absent) return;  // wall_half_branches() says so
+    Vec3 n;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      n[a] = frame_.box.minimum_image(axis, frame_.particles.position[a][i] - contacts.point[a][k]);
+    }
+    const double distance = normalise(n);
+    if (distance > 0) change_force(contacts.force, k, n, damping(wall_meeting(i, distance)) * along(i, n));
+  }
+
+ private:
+  // Returns the length that it had.
+  static double normalise(Vec3& n) {
+    const double length = std::sqrt(dot(n, n));
+    if (length > 0)
+      for (double& c : n) c /= length;
+    return length;
+  }
+
+  // With half a step of the rate, along n, at which the force changes, and what follows of it.
+  void change_force(Columns3& forces, std::size_t k, const Vec3& n, double rate) const {
+    const double change = 0.5 * spec_.dt * rate;
+    const Vec3 force{forces[0][k], forces[1][k], forces[2][k]};
     const double normal = dot(force, n);
     Vec3 tangential;
     for (std::size_t a = 0; a < 3; ++a) tangential[a] = force[a] - normal * n[a];
@@ -61,10 +91,9 @@ class Correction {
       if (magnitude > 0 && magnitude >= sliding * limit)
         stretch += *spec_.friction * (std::abs(normal + change) - std::abs(normal)) / magnitude;
     }
-    for (std::size_t a = 0; a < 3; ++a) contacts.force[a][k] = (normal + change) * n[a] + stretch * tangential[a];
+    for (std::size_t a = 0; a < 3; ++a) forces[a][k] = (normal + change) * n[a] + stretch * tangential[a];
   }
 
- private:
   // Between the steps at which it sorts them, a run lets particles leave the box a little without wrapping them; only
   // unwrapped coordinates lie farther out.
   double place(int axis, double x) const {
@@ -93,20 +122,27 @@ class Correction {
     return m[i] * m[j] / (m[i] + m[j]);
   }
 
-  // γ.
-  double damping(std::size_t i, std::size_t j, double distance) const {
-    const double mass = effective_mass(i, j);
-    if (spec_.law == DampingLaw::rate) return spec_.rate * mass;
+  Meeting meeting(std::size_t i, std::size_t j, double distance) const {
     const std::vector<double>& r = frame_.particles.radius;
-    const double radius = r[i] * r[j] / (r[i] + r[j]);
+    if (spec_.law == DampingLaw::rate) return {effective_mass(i, j)};
+    return {effective_mass(i, j), r[i] * r[j] / (r[i] + r[j]), std::max(0.0, r[i] + r[j] - distance)};
+  }
+  Meeting wall_meeting(std::size_t i, double distance) const {
+    const std::vector<double>& r = frame_.particles.radius;
+    if (spec_.law == DampingLaw::rate) return {frame_.particles.mass[i]};
+    return {frame_.particles.mass[i], r[i], std::max(0.0, r[i] - distance)};
+  }
+
+  // γ.
+  double damping(const Meeting& m) const {
+    if (spec_.law == DampingLaw::rate) return spec_.rate * m.mass;
     if (spec_.law == DampingLaw::hooke) {
-      const double q = 16.0 / 15.0 * std::sqrt(radius) * effective_modulus_;
-      const double stiffness = q * std::pow(mass * square(spec_.characteristic_velocity) / q, 0.2);
-      return 2 * damping_ratio_ * std::sqrt(stiffness * mass);
+      const double q = 16.0 / 15.0 * std::sqrt(m.radius) * effective_modulus_;
+      const double stiffness = q * std::pow(m.mass * square(spec_.characteristic_velocity) / q, 0.2);
+      return 2 * damping_ratio_ * std::sqrt(stiffness * m.mass);
     }
-    const double overlap = std::max(0.0, r[i] + r[j] - distance);
-    const double stiffness = 2 * effective_modulus_ * std::sqrt(radius * overlap);
-    return 2 * std::sqrt(5.0 / 6.0) * damping_ratio_ * std::sqrt(stiffness * mass);
+    const double stiffness = 2 * effective_modulus_ * std::sqrt(m.radius * m.overlap);
+    return 2 * std::sqrt(5.0 / 6.0) * damping_ratio_ * std::sqrt(stiffness * m.mass);
   }
 
   const HalfStep& spec_;
@@ -131,6 +167,9 @@ void correct_half_step(const HalfStep& spec, Frame& frame) {
   Correction correction(spec, frame);
   parallel_ranges(frame.contacts.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) correction.correct(k);
+  });
+  parallel_ranges(frame.wall_contacts.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) correction.correct_wall(k);
   });
 }
 

@@ -33,7 +33,8 @@ void apply_selection(const Selection& selection, const Box& box, Particles& part
 }
 
 void use_forces_of_run(const Pipeline& pipeline, Frame& frame) {
-  if (const auto& half_step = pipeline.input.contacts.half_step; half_step && frame.contacts.size() > 0)
+  if (const auto& half_step = pipeline.input.contacts.half_step;
+      half_step && (frame.contacts.size() > 0 || frame.wall_contacts.size() > 0))
     correct_half_step(*half_step, frame);
   frame.particles.force = {};
 }

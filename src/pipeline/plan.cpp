@@ -332,7 +332,8 @@ Plan plan_of_stages(const Pipeline& pipeline, const StageRegistry& registry) {
     for (Sweep& sweep : plan.sweeps) need_wall_contacts(pipeline, sweep);
   if (const auto& half_step = pipeline.input.contacts.half_step)
     for (Sweep& sweep : plan.sweeps)
-      if (sweep.columns.has(Column::contacts)) sweep.columns |= half_step_columns(*half_step);
+      if (sweep.columns.has(Column::contacts) || sweep.columns.has(Column::wall_contacts))
+        sweep.columns |= half_step_columns(*half_step);
   for (const auto& entry : moments.entries())
     if (kept.contains(entry.moment->name)) plan.means.push_back(entry.moment);
   plan.errors = plan_errors(error_stages(plan.stages), plan.stages, stages);

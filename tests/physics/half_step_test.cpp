@@ -1,6 +1,7 @@
-/// The correction of dumped contact forces on a real run: Newton's second law of each grain.
+/// The correction of dumped contact forces on real runs: Newton's second law of each grain.
 #include "bin/half_step.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -71,6 +72,37 @@ TEST(HalfStepOfTheShearCell, ForcesBalanceAsInTheRun) {
   }
 }
 
+// Two grains that hit a mesh without gravity, one head-on and one that slides: the force of the wall is all that acts.
+TEST(HalfStepOfAnImpact, ForcesOfWallsAreThoseThatMoveTheGrains) {
+  HalfStep law;
+  law.law = DampingLaw::hertz;
+  law.dt = 1e-6;
+  law.youngs_modulus = 1e7;
+  law.poisson_ratio = 0.3;
+  law.restitution = 0.2;
+  law.friction = 0.4;
+  InputSpec input;
+  input.particles = {in_repository("sample_dumps/formats/impact_grains_*.dump")};
+  input.wall_contacts.files = {in_repository("sample_dumps/formats/impact_walls_*.dump")};
+  input.wall_contacts.compute = {"pos", "id", "force"};
+  const auto source = open_dumps(input);
+  ASSERT_EQ(source->frames().size(), 2U);
+  const auto largest_difference = [](const Frame& frame) {
+    double largest = 0;
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t i = 0; i < 2; ++i)
+        largest = std::max(largest, std::abs(frame.particles.force[a][i] - frame.wall_contacts.force[a][i]));
+    return largest;
+  };
+  for (std::size_t k = 0; k < 2; ++k) {
+    Frame frame = source->read(k, half_step_columns(law) | Column::wall_contacts);
+    ASSERT_EQ(frame.wall_contacts.id, frame.particles.id);
+    EXPECT_GT(largest_difference(frame), 6e-6);  // of 0.9e-3 ... 1.8e-3 N
+    correct_half_step(law, frame);
+    EXPECT_LT(largest_difference(frame), 4e-18);  // the rounding of ten operations
+  }
+}
+
 TEST(HalfStepOfTheShearCell, ReadsForcesForContactsOnly) {
   Pipeline pipeline = shear_cell_pipeline({"contact_stress"});
   pipeline.input.contacts.half_step = shear_cell_law();
@@ -78,6 +110,12 @@ TEST(HalfStepOfTheShearCell, ReadsForcesForContactsOnly) {
   EXPECT_TRUE(columns.has(Column::force) && columns.has(Column::mass));
   pipeline.fields = {"phi"};
   EXPECT_FALSE(all_columns(make_plan(pipeline)).has(Column::force));
+  pipeline.select = {};
+  pipeline.fields = {"wall_force"};
+  pipeline.input.wall_contacts.files = {"walls"};
+  EXPECT_TRUE(all_columns(make_plan(pipeline)).has(Column::force));
+  EXPECT_FALSE(all_columns(make_plan(pipeline)).has(Column::contacts));
+  pipeline.input.wall_contacts = {};
   pipeline.fields = {"contact_stress"};
   pipeline.input.contacts.half_step.reset();
   EXPECT_FALSE(all_columns(make_plan(pipeline)).has(Column::force));

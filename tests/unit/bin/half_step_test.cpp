@@ -174,6 +174,39 @@ TEST(HalfStep, LeavesOutTheImageOfTheSecondGrainAcrossAPeriod) {
   EXPECT_NEAR(corrected(spec, frame) - frame.contacts.force[0][0], 0.5 * 40 * mass * dt * a, 1e-12);
 }
 
+// A wall is like a frozen grain of 1e6 times the radius: R* of that one is 4e-7 less, and its overlap of 2e-3 is
+// rounded by 1e-10. Both go into the damping by their square root at most.
+TEST(HalfStep, OfAContactWithAWallIsThatWithAHugeFrozenGrain) {
+  constexpr double huge = 1e6;
+  for (const Case& c : cases()) {
+    Collision collision(c.stiffness, c.damping);
+    for (int n = 0; n < 5; ++n) collision.step();
+    Frame grains = collision.dump();
+    HalfStep spec = c.spec;
+    spec.frozen_types = {2};
+    spec.friction = 0.5;
+    grains.box.periodic = {false, true, false};
+    grains.particles.type = {1, 2};
+    grains.particles.radius[1] = huge;
+    const double touched = grains.particles.position[0][0] + 0.398;
+    grains.particles.position[0][1] = touched + huge;
+    const double dumped = grains.contacts.force[0][0];
+    grains.contacts.force[1] = {0.5 * dumped};
+    Frame wall = grains;
+    wall.contacts = {};
+    wall.wall_contacts.id = {3, 4};
+    wall.wall_contacts.force = {std::vector<double>{dumped, dumped}, {0.5 * dumped, 0}, {0, 0}};
+    wall.wall_contacts.point = {std::vector<double>{touched, touched}, {20, 20}, {0, 0}};  // one period away
+    correct_half_step(spec, grains);
+    correct_half_step(spec, wall);
+    const double change = grains.contacts.force[0][0] - dumped;
+    EXPECT_GT(std::abs(change), 1e-3 * std::abs(dumped)) << c.name;
+    EXPECT_NEAR(wall.wall_contacts.force[0][0] - dumped, change, 1e-6 * std::abs(change)) << c.name;
+    EXPECT_NEAR(wall.wall_contacts.force[1][0], grains.contacts.force[1][0], 1e-6 * std::abs(change)) << c.name;
+    EXPECT_EQ(wall.wall_contacts.force[0][1], dumped) << c.name;  // of a grain that the frame lacks
+  }
+}
+
 TEST(HalfStep, LeavesWholeStepsAndUnknownGrains) {
   HalfStep spec = cases()[0].spec;
   Frame frame = touching_grains();
