@@ -50,31 +50,48 @@ std::string types_text(const std::vector<int>& types) {
   return result + ']';
 }
 
-void write_contacts(std::ostream& out, const Draft& draft) {
-  const ContactSpec& contacts = draft.input.contacts;
-  if (contacts.files.empty()) {
-    out << "  # contacts:          # only stresses and what follows from them need these\n"
-           "  #   files: contacts*\n";
+// A section of contacts in the pipeline file, and what it says of them.
+struct ContactText {
+  const char* section;
+  const char* purpose;
+  const char* noun;
+  const char* compute;
+  const char* advice;
+  const char* keywords;
+  const char* columns;
+};
+constexpr ContactText contact_text = {
+    .section = "contacts",
+    .purpose = "only stresses and what follows from them need these",
+    .noun = "contact",
+    .compute = "pair/gran/local",
+    .advice = ", and ask for the\n  # fields below that need contacts",
+    .keywords = "pos, id, force, contactPoint, delta",
+    .columns = "id1: ..., id2: ..., force: [..., ..., ...], point: [..., ..., ...]",
+};
+constexpr ContactText wall_contact_text = {
+    .section = "wall_contacts",
+    .purpose = "with walls that are no grains; stresses take them in",
+    .noun = "wall contact",
+    .compute = "wall/gran/local",
+    .advice = "",
+    .keywords = "pos, id, force",
+    .columns = "id: ..., force: [..., ..., ...], point: [..., ..., ...]",
+};
+
+void write_contacts(std::ostream& out, const ContactText& text, const std::vector<std::string>& files,
+                    const std::vector<std::string>& compute, const ContactDumps& dumps) {
+  if (dumps.known) {
+    const std::string head = std::string("  ") + text.section + ':';
+    out << head << std::string(23 - head.size(), ' ') << "# " << text.purpose << "\n    files: " << list(files) << '\n';
+    if (!compute.empty()) out << "    compute: " << list(compute) << '\n';
     return;
   }
-  if (draft.contacts_known) {
-    out << "  contacts:            # only stresses and what follows from them need these\n    files: "
-        << list(contacts.files) << '\n';
-    if (!contacts.compute.empty()) out << "    compute: " << list(contacts.compute) << '\n';
-    return;
-  }
-  out << "  # The columns of the contact dumps do not say what they hold:\n  #  ";
-  for (const std::string& column : draft.contact_columns) out << ' ' << column;
-  out << "\n"
-         "  # Name them, or give the keywords of the `compute pair/gran/local` that made them (LIGGGHTS), and ask for "
-         "the\n"
-         "  # fields below that need contacts.\n"
-         "  # contacts:\n"
-         "  #   files: "
-      << list(contacts.files)
-      << "\n"
-         "  #   compute: [pos, id, force, contactPoint, delta]\n"
-         "  #   columns: {id1: ..., id2: ..., force: [..., ..., ...], point: [..., ..., ...]}\n";
+  out << "  # The columns of the " << text.noun << " dumps do not say what they hold:\n  #  ";
+  for (const std::string& column : dumps.columns) out << ' ' << column;
+  out << "\n  # Name them, or give the keywords of the `compute " << text.compute << "` that made them (LIGGGHTS)"
+      << text.advice << ".\n  # " << text.section << ":\n  #   files: " << list(files) << "\n  #   compute: ["
+      << text.keywords << "]\n  #   columns: {" << text.columns << "}\n";
 }
 
 void write_input(std::ostream& out, const Draft& draft) {
@@ -91,7 +108,12 @@ void write_input(std::ostream& out, const Draft& draft) {
   if (input.density) out << "  density: " << print_number(*input.density) << '\n';
   if (input.periodic) out << "  periodic: " << *input.periodic << '\n';
   if (input.radius) out << "  radius: " << print_number(*input.radius) << '\n';
-  write_contacts(out, draft);
+  if (input.contacts.files.empty())
+    out << "  # contacts:          # " << contact_text.purpose << "\n  #   files: contacts*\n";
+  else
+    write_contacts(out, contact_text, input.contacts.files, input.contacts.compute, draft.contacts);
+  if (!input.wall_contacts.files.empty())
+    write_contacts(out, wall_contact_text, input.wall_contacts.files, input.wall_contacts.compute, draft.wall_contacts);
 }
 
 void write_selection(std::ostream& out, const Survey& survey) {

@@ -10,13 +10,18 @@
 
 namespace grainvdb::cli {
 
+/// What the dumps of one sort of contacts hold.
+struct ContactDumps {
+  std::vector<std::string> columns;
+  bool known = false;  ///< whether the columns can be told apart
+};
+
 /// What a new pipeline file is made of.
 struct Draft {
-  InputSpec input;                           ///< as given on the command line; files as they shall stand in the file
-  std::string command;                       ///< the file's own name, for the examples in it
-  std::vector<std::string> contact_columns;  ///< of the contact dumps
-  bool contacts_known = false;               ///< whether their columns can be told apart
-  bool times_known = false;                  ///< whether the dumps or the command line give times
+  InputSpec input;      ///< as given on the command line; files as they shall stand in the file
+  std::string command;  ///< the file's own name, for the examples in it
+  ContactDumps contacts, wall_contacts;
+  bool times_known = false;  ///< whether the dumps or the command line give times
   bool units_known = false;
   Survey survey;
   Box box;

@@ -21,6 +21,7 @@ constexpr const char* init_footer = R"(Examples:
   grainvdb init 'post/dump*.liggghts' --contacts 'post/contacts*.liggghts' --contact-compute pos id force contactPoint delta \
       --units si --dt 1e-6 --output shear.yaml
   grainvdb init run.dump.gz --density 2500 --output run.yaml
+  grainvdb init 'grains*.dump' --wall-contacts 'walls*.dump' --wall-contact-compute pos id force
 
 The file names the grains that flow as material, a kernel of three mean diameters, voxels of half a diameter that fit the
 periodic box, and the common fields for which the dumps have what they need. It is checked as `grainvdb validate` does.)";
@@ -47,13 +48,21 @@ void write(const fs::path& path, const std::string& text) {
   if (!(out << text << std::flush)) throw IoError("cannot write", path.string(), errno);
 }
 
-bool contacts_can_be_read(FrameSource& source) {
+ContactDumps contact_dumps(FrameSource& source, std::vector<std::string> columns, Column contacts) {
+  if (columns.empty()) return {};
   try {
-    source.require(0, Column::contacts);
-    return true;
+    source.require(0, contacts);
+    return {std::move(columns), true};
   } catch (const Error&) {
-    return false;
+    return {std::move(columns), false};
   }
+}
+
+void say_if_unknown(const ContactDumps& dumps, const std::string& noun, const std::string& section,
+                    const std::string& option) {
+  if (!dumps.columns.empty() && !dumps.known)
+    std::cout << "The columns of the " << noun << " dumps are not known: see " << section << " there, or give "
+              << option << ".\n";
 }
 
 void refuse_to_replace(const std::string& file) {
@@ -100,7 +109,7 @@ void sort_fields(Draft& draft, const fs::path& file, FrameSource& source) {
   for (const std::string& field : common_fields()) {
     const Pipeline pipeline = load_pipeline(file.string(), {"output.fields=[" + field + "]"});
     const Plan plan = make_plan(pipeline);
-    if (needs_contacts(plan) && !draft.contacts_known) {
+    if (needs_contacts(plan) && !draft.contacts.known) {
       draft.refused[field] = "needs contacts";
       continue;
     }
@@ -123,9 +132,10 @@ void init(const InitOptions& options) {
   draft.input = options.input;
   draft.input.particles = relative_to(file.parent_path(), options.input.particles);
   draft.input.contacts.files = relative_to(file.parent_path(), options.input.contacts.files);
+  draft.input.wall_contacts.files = relative_to(file.parent_path(), options.input.wall_contacts.files);
   draft.command = options.file;
-  draft.contact_columns = source->contact_columns();
-  draft.contacts_known = !draft.contact_columns.empty() && contacts_can_be_read(*source);
+  draft.contacts = contact_dumps(*source, source->contact_columns(), Column::contacts);
+  draft.wall_contacts = contact_dumps(*source, source->wall_contact_columns(), Column::wall_contacts);
   draft.times_known = last.time.has_value();
   draft.units_known = source->units().name != "unspecified";
   draft.survey = survey(*source, source->frames().size() - 1);
@@ -149,9 +159,8 @@ void init(const InitOptions& options) {
     throw;
   }
   std::cout << "wrote " << options.file << " with " << draft.fields.size() << " fields\n";
-  if (!draft.contact_columns.empty() && !draft.contacts_known)
-    std::cout
-        << "The columns of the contact dumps are not known: see input.contacts there, or give --contact-compute.\n";
+  say_if_unknown(draft.contacts, "contact", "input.contacts", "--contact-compute");
+  say_if_unknown(draft.wall_contacts, "wall contact", "input.wall_contacts", "--wall-contact-compute");
 }
 
 }  // namespace
@@ -168,6 +177,14 @@ void add_init(CLI::App& app) {
   command
       ->add_option("--contact-compute", input.contacts.compute,
                    "Keywords of the LIGGGHTS `compute pair/gran/local` that made them")
+      ->type_name("KEYWORDS");
+  command
+      ->add_option("--wall-contacts", input.wall_contacts.files,
+                   "Dumps of contacts with walls that are no grains: files, folders or patterns")
+      ->type_name("DUMPS");
+  command
+      ->add_option("--wall-contact-compute", input.wall_contacts.compute,
+                   "Keywords of the LIGGGHTS `compute wall/gran/local` that made them")
       ->type_name("KEYWORDS");
   command->add_option("--units", input.units, "Unit system, where the dumps name none")->type_name("NAME");
   command->add_option("--dt", input.dt, "Time per step, for dumps without times")

@@ -2,6 +2,7 @@
 
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
+#include "support/sample_dumps.hpp"
 
 namespace grainvdb::test::info_test {
 namespace {
@@ -35,6 +36,24 @@ TEST(Info, ShowsContactsTimesAndEveryFrame) {
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("frames: 2\n"), HasSubstr("step 200, time 100, 64 particles  frames/dump200.txt"),
                     HasSubstr("contact columns: id1 id2 fx fy fz (5)")));
+}
+
+TEST(Info, ShowsContactsWithWalls) {
+  const Folder folder;
+  const std::string sample = grainvdb::testing::in_repository("sample_dumps/formats/");
+  const CommandResult meshes = run_command(
+      {"info", sample + "mesh_grains_*.dump", "--wall-contacts", sample + "mesh_walls_*.dump"}, folder.path());
+  ASSERT_EQ(meshes.exit_code, 0) << meshes.err;
+  EXPECT_THAT(meshes.out, AllOf(HasSubstr("\nwall contact columns: c_wl[1] c_wl[2] "), HasSubstr("c_wl[15] (15)\n"),
+                                HasSubstr("files: 4, "), Not(HasSubstr("\ncontact columns"))));
+  const CommandResult both =
+      run_command({"info", sample + "mesh_mercury.data", "--periodic", "none", "--contacts",
+                   sample + "mesh_mercury.fstat", "--wall-contacts", sample + "mesh_mercury.fstat"},
+                  folder.path());
+  ASSERT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_THAT(both.out,
+              AllOf(HasSubstr("\ncontact columns: id1 id2 fx fy fz (5)\n"),
+                    HasSubstr("\nwall contact columns: id fx fy fz cx cy cz (7)\n"), HasSubstr("files: 2, ")));
 }
 
 TEST(Info, NamesTheUnitsOfTheDump) {

@@ -3,6 +3,7 @@
 
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
+#include "support/sample_dumps.hpp"
 
 namespace grainvdb::test::init_test {
 namespace {
@@ -26,7 +27,7 @@ TEST(Init, WritesAFileThatRuns) {
                     HasSubstr("    - gd_over_dv")));
   const CommandResult run = run_command({"run", "my.yaml", "-o", "out"}, folder.path());
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(folder.names_in("out"), testing::ElementsAre("fields.hdf"));
+  EXPECT_THAT(folder.names_in("out"), ::testing::ElementsAre("fields.hdf"));
 }
 
 TEST(Init, AsksOnlyForWhatTheDumpsGive) {
@@ -73,6 +74,41 @@ TEST(Init, SaysThatItCannotTellContactColumnsApart) {
   EXPECT_THAT(made.out, HasSubstr("--contact-compute"));
   EXPECT_THAT(read_file(folder / "pipeline.yaml"), HasSubstr("  #   c_c[1] c_c[2] c_c[3] c_c[4] c_c[5]\n"));
   EXPECT_EQ(run_command({"validate", "pipeline.yaml"}, folder.path()).exit_code, 0);
+}
+
+TEST(Init, TakesContactsWithWalls) {
+  const Folder folder;
+  const std::string sample = grainvdb::testing::in_repository("sample_dumps/formats/");
+  const std::vector<std::string> dumps{"init",
+                                       sample + "mesh_grains_*.dump",
+                                       "--contacts",
+                                       sample + "mesh_pairs_*.dump",
+                                       "--contact-compute",
+                                       "id",
+                                       "force",
+                                       "--wall-contacts",
+                                       sample + "mesh_walls_*.dump"};
+  std::vector<std::string> words = dumps;
+  words.insert(words.end(), {"--wall-contact-compute", "pos", "id", "force", "contactPoint"});
+  const CommandResult made = run_command(words, folder.path());
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(made.out, "wrote pipeline.yaml with 12 fields\n");
+  EXPECT_THAT(read_file(folder / "pipeline.yaml"),
+              AllOf(HasSubstr("\n  wall_contacts:       # "),
+                    HasSubstr("\n    files: \"" + sample +
+                              "mesh_walls_*.dump\"\n    compute: [\"pos\", \"id\", \"force\", \"contactPoint\"]\n")));
+  EXPECT_EQ(run_command({"run", "pipeline.yaml", "-o", "out", "--set", "output.fields=[wall_force]"}, folder.path())
+                .exit_code,
+            0);
+
+  words = dumps;
+  words.insert(words.end(), {"-o", "unknown.yaml"});
+  const CommandResult unknown = run_command(words, folder.path());
+  ASSERT_EQ(unknown.exit_code, 0) << unknown.err;
+  EXPECT_THAT(unknown.out, HasSubstr("see input.wall_contacts there, or give --wall-contact-compute"));
+  EXPECT_THAT(read_file(folder / "unknown.yaml"),
+              AllOf(HasSubstr("\n  #   c_wl[1] c_wl[2]"), HasSubstr("\n  # wall_contacts:\n  #   files: \"")));
+  EXPECT_EQ(run_command({"validate", "unknown.yaml"}, folder.path()).exit_code, 0);
 }
 
 TEST(Init, RefusesWhatItCannotDo) {

@@ -48,7 +48,7 @@ TEST(Terminal, ShowsProgressWithTheTimeLeft) {
   write_example(folder);
   const auto text = printed_at_terminal({"run", "p.yaml"}, folder.path());
   if (!text) GTEST_SKIP() << "this system has no pseudo-terminals";
-  EXPECT_THAT(*text, testing::AllOf(HasSubstr("\r\x1b[Kframes: 1/3 (33 %), "), HasSubstr(" s left")));
+  EXPECT_THAT(*text, ::testing::AllOf(HasSubstr("\r\x1b[Kframes: 1/3 (33 %), "), HasSubstr(" s left")));
   EXPECT_EQ(printed_at_terminal({"run", "p.yaml", "-q"}, folder.path()), "");
 }
 
@@ -80,7 +80,7 @@ TEST(Interrupt, LeavesNoOutput) {
     EXPECT_TRUE(began);
     EXPECT_EQ(result.exit_code, 128 + signal_number);
     EXPECT_EQ(result.err, "grainvdb: interrupted; nothing was written\n");
-    EXPECT_THAT(folder.names_in("output"), testing::IsEmpty());
+    EXPECT_THAT(folder.names_in("output"), ::testing::IsEmpty());
   }
 }
 
