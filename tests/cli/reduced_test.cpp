@@ -1,5 +1,6 @@
 // `grainvdb run` with output.reduced: every file in units of d, sqrt(d/g) and rho_p d^3.
 #include <gmock/gmock.h>
+#include <openvdb/openvdb.h>
 
 #include "cli/example_dumps.hpp"
 #include "unit/write/hdf5_reader.hpp"
@@ -59,6 +60,35 @@ TEST(ReducedOutput, NamesItsUnitsInEveryFile) {
   EXPECT_THAT(read_file(folder / "reduced/tables/pair_correlation.csv"), HasSubstr("\nr [d],"));
   EXPECT_THAT(read_file(folder / "reduced/tables/numbers.csv"), HasSubstr("pair_correlation,closest,2,"));
   EXPECT_THAT(result.out, HasSubstr("closest 2 d"));
+}
+
+TEST(ReducedOutput, IsWhatVdbFilesHold) {
+  const Folder folder;
+  write_example(folder);
+  const auto velocity = [&](const std::string& output, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"run", "p.yaml", "-o", output, "--set", "output.formats=[vdb]"};
+    words.insert(words.end(), more.begin(), more.end());
+    const CommandResult result = run_command(words, folder.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    openvdb::initialize();
+    openvdb::io::File file((folder / (output + "/fields.vdb")).string());
+    file.open(/*delayLoad=*/false);
+    return std::pair{openvdb::gridPtrCast<openvdb::Vec3SGrid>(file.readGrid("velocity")), *file.getMetadata()};
+  };
+  const auto [plain, plain_file] = velocity("plain", {});
+  const auto [reduced, file] = velocity("reduced", {"--set", halves});
+  ASSERT_TRUE(plain && reduced);
+  EXPECT_EQ(reduced->metaValue<std::string>("unit"), "sqrt(g d)");
+  EXPECT_EQ(reduced->metaValue<std::string>("length_unit"), "d");
+  EXPECT_EQ(reduced->metaValue<std::string>("time_unit"), "sqrt(d/g)");
+  EXPECT_EQ(reduced->metaValue<double>("time"), 4 * plain->metaValue<double>("time"));
+  EXPECT_THAT(file.metaValue<std::string>("provenance/reduced_units"), HasSubstr("d = 0.5 m\n"));
+  const openvdb::Coord corner(1, 2, 3);
+  EXPECT_EQ(reduced->indexToWorld(corner), 2 * plain->indexToWorld(corner));
+  EXPECT_GT(plain->activeVoxelCount(), 0U);
+  EXPECT_EQ(reduced->activeVoxelCount(), plain->activeVoxelCount());
+  for (auto voxel = plain->cbeginValueOn(); voxel; ++voxel)
+    ASSERT_EQ(reduced->tree().getValue(voxel.getCoord()), *voxel / 2) << voxel.getCoord();
 }
 
 TEST(ReducedOutput, IsTheSameForScalesAndSeriesThatAreResumed) {
