@@ -1,9 +1,11 @@
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "measure/counted_region.hpp"
+#include "measure/field_motion.hpp"
 #include "measure/fluctuations.hpp"
 #include "measure/grains.hpp"
 #include "measure/option_values.hpp"
@@ -16,6 +18,10 @@ namespace {
 constexpr double velocity_reach = 8;  // mean diameters
 constexpr double default_from = 1;
 
+bool about_field(const OptionValues& options) {
+  return std::get<std::string>(options.at("about")) == "field";
+}
+
 /// C(r) of the bins that are fitted.
 struct Points {
   std::vector<double> r, c;
@@ -23,15 +29,33 @@ struct Points {
 
 class VelocityCorrelationMeasurement : public Measurement {
  public:
-  explicit VelocityCorrelationMeasurement(const OptionValues& options) : options_(options), region_(options) {}
+  explicit VelocityCorrelationMeasurement(const MeasurementSetting& setting)
+      : options_(setting.options), region_(setting.options) {
+    if (about_field(options_)) field_.emplace(setting.lattice);
+  }
+
+  void take(const OutputFields& output) override { field_->take(output); }
 
   void add(const Frame& frame) override {
+    if (field_ && !field_->covers(frame.step)) {
+      ++frames_without_field_;
+      return;
+    }
     Columns3 position, velocity;
     for (std::size_t i = 0; i < frame.particles.size(); ++i) {
       const Vec3 x = wrapped(frame.box, frame.particles.position, i);
       if (!region_.holds(x)) continue;
+      Vec3 v = vector_at(frame.particles.velocity, i);
+      if (field_) {
+        const std::optional<Vec3> u = field_->at(frame.step, x);
+        if (!u) {
+          ++grains_without_field_;
+          continue;
+        }
+        for (std::size_t a = 0; a < 3; ++a) v[a] -= (*u)[a];
+      }
       push_back(position, x);
-      push_back(velocity, vector_at(frame.particles.velocity, i));
+      push_back(velocity, v);
     }
     if (position[0].empty()) return;
     if (!correlation_) {
@@ -41,12 +65,13 @@ class VelocityCorrelationMeasurement : public Measurement {
       slabs_.emplace(region_.within(frame.box, frame.particles.position));
       correlation_.emplace(length_option(options_, "reach", velocity_reach, d), count_option(options_, "bins"));
     }
-    correlation_->add(frame.box, position, fluctuations(motion_, position, velocity), *slabs_);
+    correlation_->add(frame.box, position, field_ ? velocity : fluctuations(motion_, position, velocity), *slabs_);
   }
 
   std::vector<Table> tables() override {
     Table table{"velocity_correlation", "correlation of the velocity fluctuations of two grains",
                 "C(r) = <u'(0).u'(r)>/sqrt(<u'(0)^2><u'(r)^2>); fit A (1 - 3r/4R + r^3/16R^3)"};
+    add_remarks(table);
     if (!correlation_) {
       table.remarks.emplace_back(no_grains);
       return {table};
@@ -89,6 +114,16 @@ class VelocityCorrelationMeasurement : public Measurement {
   }
 
  private:
+  void add_remarks(Table& table) const {
+    if (frames_without_field_ > 0)
+      table.remarks.push_back(std::to_string(frames_without_field_) +
+                              " frames are in no output time, so that there is no field about which their grains "
+                              "could fluctuate; they were left out.");
+    if (grains_without_field_ > 0)
+      table.remarks.push_back(std::to_string(grains_without_field_) +
+                              " times a grain lay where the velocity field is undefined, and was left out.");
+  }
+
   SphereFit fitted(const std::vector<double>& c) const {
     Points points;
     for (std::size_t k = 0; k < c.size(); ++k) {
@@ -102,6 +137,8 @@ class VelocityCorrelationMeasurement : public Measurement {
   OptionValues options_;
   CountedRegion region_;
   MeanMotion motion_;
+  std::optional<FieldMotion> field_;  ///< takes the place of motion_ for `about: field`
+  std::size_t frames_without_field_ = 0, grains_without_field_ = 0;
   double from_ = 0;
   std::optional<Slabs> slabs_;
   std::optional<VelocityCorrelation> correlation_;
@@ -127,12 +164,24 @@ MeasurementInfo velocity_correlation_measurement() {
                                .default_value = 0.0,
                                .help = "least distance that is fitted [length]; 0: one mean diameter",
                                .minimum = 0}};
-  for (OptionInfo& option : mean_motion_options()) own.push_back(std::move(option));
+  for (OptionInfo& option : mean_motion_options()) {
+    if (option.name == "about") {
+      option.help +=
+          "; or (field) the velocity field of the output time that the frame is in: the time mean where average.window "
+          "is all";
+      option.choices.emplace_back("field");
+    }
+    own.push_back(std::move(option));
+  }
   info.options = CountedRegion::options(std::move(own));
   info.conflict = CountedRegion::conflict;
-  info.needs = [](const OptionValues&) { return MeasurementNeeds{Column::radius | Column::velocity, {}}; };
+  info.needs = [](const OptionValues& options) {
+    MeasurementNeeds needs{Column::radius | Column::velocity, {}};
+    if (about_field(options)) needs.fields = {"velocity"};
+    return needs;
+  };
   info.make = [](const MeasurementSetting& setting) {
-    return std::make_unique<VelocityCorrelationMeasurement>(setting.options);
+    return std::make_unique<VelocityCorrelationMeasurement>(setting);
   };
   return info;
 }
