@@ -116,12 +116,12 @@ class VelocityCorrelationMeasurement : public Measurement {
  private:
   void add_remarks(Table& table) const {
     if (frames_without_field_ > 0)
-      table.remarks.push_back(std::to_string(frames_without_field_) +
-                              " frames are in no output time, so that there is no field about which their grains "
-                              "could fluctuate; they were left out.");
+      table.remarks.push_back(
+          "Frames in no output time, whose grains have no field to fluctuate about, were left out: " +
+          std::to_string(frames_without_field_) + ".");
     if (grains_without_field_ > 0)
-      table.remarks.push_back(std::to_string(grains_without_field_) +
-                              " times a grain lay where the velocity field is undefined, and was left out.");
+      table.remarks.push_back("Grains where the velocity field is undefined were left out, in all frames: " +
+                              std::to_string(grains_without_field_) + ".");
   }
 
   SphereFit fitted(const std::vector<double>& c) const {

@@ -1,4 +1,5 @@
 // C(r) about the velocity field of output times.
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,6 +43,14 @@ Frame frame_of(std::int64_t step, double rate) {
   return f;
 }
 
+/// Whether the table says of what there were so many.
+bool remarks(const Table& table, const std::string& of, std::size_t count) {
+  const std::string end = ": " + std::to_string(count) + ".";
+  return std::any_of(table.remarks.begin(), table.remarks.end(), [&](const std::string& remark) {
+    return remark.find(of) != std::string::npos && remark.ends_with(end);
+  });
+}
+
 class AboutTheField : public ::testing::Test {
  protected:
   Table table(const std::vector<Frame>& frames) {
@@ -69,18 +78,17 @@ TEST_F(AboutTheField, FluctuationsAreAboutTheOutputTimeOfTheirFrame) {
 
 TEST_F(AboutTheField, FramesInNoOutputTimeAreLeftOut) {
   const Table t = table({frame_of(7, 1), frame_of(15, -2)});
-  EXPECT_EQ(t.remarks.size(), 1U);
+  EXPECT_TRUE(remarks(t, "no output time", 1));
   for (const double c : column(t, "c")) EXPECT_NEAR(c, 1, 3e-6);
 }
 
 TEST_F(AboutTheField, GrainsWhereThereIsNoFieldAreLeftOut) {
   const Frame frame = frame_of(20, -2);
   const Table t = table({frame});
-  ASSERT_EQ(t.remarks.size(), 1U);
   std::size_t beyond = 0;  // the last voxel centre is at 6.25
   for (const double x : frame.particles.position[0])
     if (x >= 6.25) ++beyond;
-  EXPECT_TRUE(t.remarks[0].starts_with(std::to_string(beyond) + ' ')) << t.remarks[0];
+  EXPECT_TRUE(remarks(t, "field is undefined", beyond));
 }
 
 }  // namespace
