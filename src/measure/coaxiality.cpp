@@ -30,7 +30,7 @@ class Coaxiality : public Measurement {
   std::vector<Table> tables() override {
     Table t{.name = "coaxiality",
             .description = "distribution of the angle between the major axes of stress and strain rate, by shear rate",
-            .equation = "acos|a(sigma).a(D)|, weight |gd|; random axes: density sin(angle)"};
+            .equation = "acos|a(sigma).a(D)|, weight |gd|; random axes: density sin(angle), mean 1 rad"};
     const Histogram& histogram = angles_.histogram();
     std::vector<double> random;
     const double width = right_angle / static_cast<double>(histogram.bins());
@@ -39,7 +39,7 @@ class Coaxiality : public Measurement {
     t.columns = {{"angle", dimension::none, "middle of the bin [rad]", histogram.centres()},
                  {"density", dimension::none, "share of the weight by width of the bin [1/rad]", histogram.densities()},
                  {"random", dimension::none, "the same for axes that know nothing of each other [1/rad]", random}};
-    t.numbers = angles_.numbers("the angle [rad], 0 where coaxial, 1 in the mean for random axes");
+    t.numbers = angles_.numbers("the angle [rad]");
     if (angles_.empty()) t.remarks.emplace_back("No voxel that flows has both axes.");
     return {std::move(t)};
   }

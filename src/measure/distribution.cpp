@@ -27,7 +27,7 @@ std::vector<Quantity> Distribution::numbers(const std::string& what) const {
   for (int percent : {5, 25, 50, 75, 95})
     all.push_back({.name = "quantile_" + std::to_string(percent),
                    .value = sample_.quantile(percent / 100.0),
-                   .description = std::to_string(percent) + " % of the weight lies below this " + what});
+                   .description = what + " below which " + std::to_string(percent) + " % of the weight lie"});
   all.push_back({.name = "undefined_share",
                  .value = 1 - sample_.weight() / offered_,
                  .description = "weight of voxels without " + what});

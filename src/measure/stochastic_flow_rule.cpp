@@ -104,11 +104,11 @@ class StochasticFlowRule : public Measurement {
   Table angle_table() const {
     Table t{.name = "stochastic_flow_rule",
             .description = "distribution of the angle between the velocity and the way opposite to the drift of spots",
-            .equation = "acos(-u.D1/(|u| |D1|)), weight |u|; random directions: density sin(angle)/2"};
+            .equation = "acos(-u.D1/(|u| |D1|)), weight |u|; random directions: density sin(angle)/2, mean pi/2 rad"};
     t.columns = {{"angle", dimension::none, "middle of the bin [rad]", angles_.histogram().centres()},
                  {"density", dimension::none, "share of the weight by width of the bin [1/rad]",
                   angles_.histogram().densities()}};
-    t.numbers = angles_.numbers("the angle [rad], 0 by the rule, pi/2 in the mean for random directions");
+    t.numbers = angles_.numbers("the angle [rad]");
     if (angles_.empty()) t.remarks.emplace_back("No voxel has both a velocity and a drift of spots.");
     return t;
   }
