@@ -50,25 +50,42 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-// Options of the application and of the subcommands that were named.
-std::vector<std::string> option_names(const CLI::App& app) {
+std::vector<std::string> option_names(const CLI::App& command) {
   std::vector<std::string> names;
-  const auto add = [&](const CLI::App& a) {
-    for (const CLI::Option* option : a.get_options())
-      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  };
-  add(app);
-  for (const CLI::App* command : app.get_subcommands()) add(*command);
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
   return names;
+}
+
+bool has_option(const CLI::App& command, const std::string& name) {
+  return name.starts_with("--") && command.get_option_no_throw(name) != nullptr;
+}
+
+// " It is an option of 'grainvdb run'."; empty where no command has it.
+std::string other_command_with(const CLI::App& app, const std::string& option) {
+  std::string commands;
+  for (const CLI::App* command : subcommands_of(app))
+    if (has_option(*command, option))
+      commands += (commands.empty() ? "" : ", ") + quote_text("grainvdb " + command->get_name());
+  return commands.empty() ? "" : "It is an option of " + commands + '.';
+}
+
+// The innermost command that was named.
+const CLI::App& called(const CLI::App& app) {
+  const auto named = app.get_subcommands();
+  return named.empty() ? app : called(*named.front());
 }
 
 // What is wrong with the first word that was not understood.
 std::string unknown_word(const CLI::App& app, const std::string& word) {
   const bool is_option = word.starts_with('-');
-  const bool is_command = !is_option && app.get_subcommands().empty();
+  const CLI::App& command = called(app);
+  const bool is_command = !is_option && !subcommands_of(command).empty();
+  const std::string option = word.substr(0, word.find('='));
   std::string guess;
-  if (is_option) guess = did_you_mean(word.substr(0, word.find('=')), option_names(app));
-  if (is_command) guess = did_you_mean(word, command_names(app));
+  if (is_option) guess = did_you_mean(option, option_names(command));
+  if (is_option && guess.empty()) guess = other_command_with(app, option);
+  if (is_command) guess = did_you_mean(word, command_names(command));
   const char* kind = is_option ? "unknown option " : is_command ? "unknown command " : "unexpected argument ";
   return kind + quote_text(word) + (guess.empty() ? "" : ". " + guess);
 }
@@ -76,7 +93,10 @@ std::string unknown_word(const CLI::App& app, const std::string& word) {
 int bad_command_line(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> rest = app.remaining(true);
   std::string command = "grainvdb";
-  for (const CLI::App* sub : app.get_subcommands()) command += ' ' + sub->get_name();
+  for (const CLI::App* sub = &app; !sub->get_subcommands().empty();) {
+    sub = sub->get_subcommands().front();
+    command += ' ' + sub->get_name();
+  }
   return fail(bad_usage, (rest.empty() ? error.what() : unknown_word(app, rest.front())) + "\nRun '" + command +
                              " --help' for usage.");
 }

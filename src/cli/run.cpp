@@ -15,6 +15,7 @@
 #include "cli/dry_run.hpp"
 #include "cli/error_json.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/number_checks.hpp"
 #include "cli/open_input.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/progress_json.hpp"
@@ -279,7 +280,7 @@ void add_run(CLI::App& app) {
       ->add_option("--checkpoint-interval", options->checkpoint_interval,
                    "Seconds from one state that is saved to the next")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonnegative_number())
       ->needs(resume)
       ->capture_default_str();
   CLI::Option* follow = command->add_flag(
@@ -292,14 +293,14 @@ void add_run(CLI::App& app) {
       ->add_option("--timeout", options->waiting.timeout,
                    "With --follow: end when no frame has come for so many seconds")
       ->type_name("SECONDS")
-      ->check(CLI::NonNegativeNumber)
+      ->check(nonnegative_number())
       ->needs(follow);
   command
       ->add_option("--look-every", options->waiting.interval,
                    "With --follow: seconds from one look at the input to the next; a frame is taken when its file has "
                    "not changed in between")
       ->type_name("SECONDS")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->needs(follow)
       ->capture_default_str();
   command->footer(run_footer);

@@ -22,8 +22,8 @@ CommandResult grainvdb(const std::vector<std::string>& arguments) {
 }
 
 TEST(Usage, EveryCommandHasHelpWithExamples) {
-  for (const char* command :
-       {"run", "measure", "info", "init", "validate", "stages", "measurements", "graph", "schema", "spot", "report"}) {
+  for (const char* command : {"run", "trace", "measure", "info", "init", "validate", "stages", "measurements", "graph",
+                              "schema", "spot", "report", "tune", "completion", "man"}) {
     const CommandResult result = grainvdb({command, "--help"});
     EXPECT_EQ(result.exit_code, 0) << command;
     EXPECT_THAT(result.out, AllOf(HasSubstr("Examples:\n  grainvdb " + std::string(command)), HasSubstr("--help")));
@@ -66,6 +66,19 @@ TEST(Usage, BadCommandLinesExitWithOne) {
   const CommandResult extra = grainvdb({"graph", "a.yaml", "b.yaml"});
   EXPECT_EQ(extra.exit_code, 1);
   EXPECT_THAT(extra.err, StartsWith("grainvdb: unexpected argument 'b.yaml'\n"));
+
+  const CommandResult below = grainvdb({"spot", "rum"});
+  EXPECT_EQ(below.exit_code, 1);
+  EXPECT_THAT(below.err, AllOf(StartsWith("grainvdb: unknown command 'rum'. Did you mean 'run'?\n"),
+                               HasSubstr("'grainvdb spot --help'")));
+
+  const CommandResult elsewhere = grainvdb({"measure", "p.yaml", "--resume"});
+  EXPECT_EQ(elsewhere.exit_code, 1);
+  EXPECT_THAT(elsewhere.err, StartsWith("grainvdb: unknown option '--resume'. It is an option of 'grainvdb run'.\n"));
+
+  const CommandResult number = grainvdb({"info", "d.txt", "--dt", "-1"});
+  EXPECT_EQ(number.exit_code, 1);
+  EXPECT_THAT(number.err, StartsWith("grainvdb: --dt: '-1' is not a number > 0\n"));
 }
 
 TEST(Usage, TheManualPageHasEveryCommandAndOption) {
