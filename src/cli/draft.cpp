@@ -50,32 +50,59 @@ std::string types_text(const std::vector<int>& types) {
   return result + ']';
 }
 
+std::string corner(const Vec3& x) {
+  return '[' + print_number(x[0]) + ", " + print_number(x[1]) + ", " + print_number(x[2]) + ']';
+}
+
+// Of columns such as c_pp[2], each once, in their order.
+std::vector<std::string> names_of_computes(const std::vector<std::string>& columns) {
+  std::vector<std::string> names;
+  for (const std::string& column : columns) {
+    const std::size_t bracket = column.find('[');
+    if (!column.starts_with("c_") || bracket == std::string::npos) continue;
+    const std::string name = column.substr(2, bracket - 2);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+// LAMMPS takes ids and forces of two computes, LIGGGHTS all of one.
+std::string computes_of_contacts(const std::vector<std::string>& columns) {
+  const std::vector<std::string> names = names_of_computes(columns);
+  if (names.size() != 2) return "compute: [pos, id, force, contactPoint, delta]";
+  return "lammps: {ids: " + names[0] + ", forces: " + names[1] +
+         "}   # of property/local patom1 patom2, and pair/local fx fy fz p1 p2 p3";
+}
+
+std::string computes_of_wall_contacts(const std::vector<std::string>& /*columns*/) {
+  return "compute: [pos, id, force]";
+}
+
 // A section of contacts in the pipeline file, and what it says of them.
 struct ContactText {
   const char* section;
   const char* purpose;
   const char* noun;
-  const char* compute;
   const char* advice;
-  const char* keywords;
+  std::string (*computes)(const std::vector<std::string>& columns);
   const char* columns;
 };
 constexpr ContactText contact_text = {
     .section = "contacts",
     .purpose = "only stresses and what follows from them need these",
     .noun = "contact",
-    .compute = "pair/gran/local",
-    .advice = ", and ask for the\n  # fields below that need contacts",
-    .keywords = "pos, id, force, contactPoint, delta",
+    .advice =
+        "  # Name them, or the computes that made them (LAMMPS), or the keywords of the `compute pair/gran/local`\n"
+        "  # (LIGGGHTS), and ask for the fields below that need contacts.\n",
+    .computes = &computes_of_contacts,
     .columns = "id1: ..., id2: ..., force: [..., ..., ...], point: [..., ..., ...]",
 };
 constexpr ContactText wall_contact_text = {
     .section = "wall_contacts",
     .purpose = "with walls that are no grains; stresses take them in",
     .noun = "wall contact",
-    .compute = "wall/gran/local",
-    .advice = "",
-    .keywords = "pos, id, force",
+    .advice = "  # Name them, or the keywords of the `compute wall/gran/local` that made them (LIGGGHTS).\n",
+    .computes = &computes_of_wall_contacts,
     .columns = "id: ..., force: [..., ..., ...], point: [..., ..., ...]",
 };
 
@@ -89,9 +116,9 @@ void write_contacts(std::ostream& out, const ContactText& text, const std::vecto
   }
   out << "  # The columns of the " << text.noun << " dumps do not say what they hold:\n  #  ";
   for (const std::string& column : dumps.columns) out << ' ' << column;
-  out << "\n  # Name them, or give the keywords of the `compute " << text.compute << "` that made them (LIGGGHTS)"
-      << text.advice << ".\n  # " << text.section << ":\n  #   files: " << list(files) << "\n  #   compute: ["
-      << text.keywords << "]\n  #   columns: {" << text.columns << "}\n";
+  out << '\n'
+      << text.advice << "  # " << text.section << ":\n  #   files: " << list(files) << "\n  #   "
+      << text.computes(dumps.columns) << "\n  #   columns: {" << text.columns << "}\n";
 }
 
 void write_input(std::ostream& out, const Draft& draft) {
@@ -107,6 +134,7 @@ void write_input(std::ostream& out, const Draft& draft) {
     out << "  # dt: 1.0e-6         # time per step: the dumps have no times\n";
   if (input.density) out << "  density: " << print_number(*input.density) << '\n';
   if (input.periodic) out << "  periodic: " << *input.periodic << '\n';
+  if (input.box) out << "  box: {lo: " << corner(input.box->lo) << ", hi: " << corner(input.box->hi) << "}\n";
   if (input.radius) out << "  radius: " << print_number(*input.radius) << '\n';
   if (input.contacts.files.empty())
     out << "  # contacts:          # " << contact_text.purpose << "\n  #   files: contacts*\n";

@@ -7,6 +7,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/dry_run.hpp"
+#include "cli/input_options.hpp"
 #include "cli/open_input.hpp"
 #include "cli/report.hpp"
 #include "cli/survey.hpp"
@@ -20,6 +21,7 @@ namespace {
 constexpr const char* info_footer = R"(Examples:
   grainvdb info dumps/
   grainvdb info 'dumps/dump*.liggghts' --contacts 'dumps/contacts*.liggghts'
+  grainvdb info 'post/grains_[0-9]*.vtk' --periodic x --box 0 0 0 0.004 0.01 0.01
   grainvdb info run.dump.gz --list
   grainvdb info dumps/ --pipeline pipelines/shear_cell.yaml
 
@@ -127,6 +129,7 @@ void print_estimates(const InfoOptions& options) {
     pipeline.input.wall_contacts.files = options.input.wall_contacts.files;
   if (options.input.dt) pipeline.input.dt = options.input.dt;
   if (options.input.periodic) pipeline.input.periodic = options.input.periodic;
+  if (options.input.box) pipeline.input.box = options.input.box;
   for (const Pipeline& p : at_scales(pipeline)) {
     const Plan plan = make_plan(p);
     std::cout << "with " << options.pipeline << (pipeline.scales.empty() ? "" : ", " + scale_name(p)) << ":\n"
@@ -158,20 +161,7 @@ void info(const InfoOptions& options) {
 void add_info(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Say what is in dump files");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("dumps", options->input.particles, "Particle dumps: files, folders or patterns")
-      ->required()
-      ->type_name("DUMPS");
-  command->add_option("--contacts", options->input.contacts.files, "Contact dumps: files, folders or patterns")
-      ->type_name("DUMPS");
-  command
-      ->add_option("--wall-contacts", options->input.wall_contacts.files,
-                   "Dumps of contacts with walls that are no grains: files, folders or patterns")
-      ->type_name("DUMPS");
-  command->add_option("--dt", options->input.dt, "Time per step, for dumps without times")
-      ->type_name("TIME")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--periodic", options->input.periodic, "Periodic axes, such as xy, for dumps that do not say")
-      ->type_name("AXES");
+  add_input_options(*command, options->input);
   command->add_flag("--list", options->list, "List every frame");
   command->add_option("--pipeline", options->pipeline, "Estimate memory and time of this pipeline on these dumps")
       ->type_name("FILE");

@@ -8,6 +8,8 @@
 
 #include "cli/commands.hpp"
 #include "cli/draft.hpp"
+#include "cli/input_options.hpp"
+#include "cli/number_checks.hpp"
 #include "grainvdb/plan.hpp"
 #include "grainvdb/run.hpp"
 
@@ -61,8 +63,9 @@ ContactDumps contact_dumps(FrameSource& source, std::vector<std::string> columns
 void say_if_unknown(const ContactDumps& dumps, const std::string& noun, const std::string& section,
                     const std::string& option) {
   if (!dumps.columns.empty() && !dumps.known)
-    std::cout << "The columns of the " << noun << " dumps are not known: see " << section << " there, or give "
-              << option << ".\n";
+    std::cout << "The columns of the " << noun << " dumps are not known: see " << section
+              << " there; for those of LIGGGHTS\n"
+              << option << " names them.\n";
 }
 
 void refuse_to_replace(const std::string& file) {
@@ -169,35 +172,14 @@ void add_init(CLI::App& app) {
   CLI::App* command = app.add_subcommand("init", "Write a pipeline file that fits dump files");
   const auto options = std::make_shared<InitOptions>();
   InputSpec& input = options->input;
-  command->add_option("dumps", input.particles, "Particle dumps: files, folders or patterns")
-      ->required()
-      ->type_name("DUMPS");
-  command->add_option("--contacts", input.contacts.files, "Contact dumps: files, folders or patterns")
-      ->type_name("DUMPS");
-  command
-      ->add_option("--contact-compute", input.contacts.compute,
-                   "Keywords of the LIGGGHTS `compute pair/gran/local` that made them")
-      ->type_name("KEYWORDS");
-  command
-      ->add_option("--wall-contacts", input.wall_contacts.files,
-                   "Dumps of contacts with walls that are no grains: files, folders or patterns")
-      ->type_name("DUMPS");
-  command
-      ->add_option("--wall-contact-compute", input.wall_contacts.compute,
-                   "Keywords of the LIGGGHTS `compute wall/gran/local` that made them")
-      ->type_name("KEYWORDS");
+  add_input_options(*command, input);
   command->add_option("--units", input.units, "Unit system, where the dumps name none")->type_name("NAME");
-  command->add_option("--dt", input.dt, "Time per step, for dumps without times")
-      ->type_name("TIME")
-      ->check(CLI::PositiveNumber);
   command->add_option("--density", input.density, "Density of the grains, for dumps without mass")
       ->type_name("DENSITY")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--radius", input.radius, "Radius of all grains, for dumps without sizes")
       ->type_name("LENGTH")
-      ->check(CLI::PositiveNumber);
-  command->add_option("--periodic", input.periodic, "Periodic axes, such as xy, for dumps that do not say")
-      ->type_name("AXES");
+      ->check(positive_number());
   command->add_option("-o,--output", options->file, "The pipeline file to write")
       ->type_name("FILE")
       ->capture_default_str();

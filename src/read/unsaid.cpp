@@ -46,7 +46,8 @@ void complete(FrameHeader& header, const InputSpec& spec, const std::string& fil
   if (header.unsaid.columns) name_columns(header, spec, file);
   if (header.unsaid.periodicity) {
     if (!spec.periodic)
-      refuse_lack(spec, file, "which axes are periodic", "input.periodic: none, or the axes, such as xy");
+      refuse_lack(spec, file, "which axes are periodic",
+                  "input.periodic, or --periodic of info and init: none, or the axes, such as xy");
     for (std::size_t a = 0; a < 3; ++a)
       header.box.periodic[a] = *spec.periodic != "none" && spec.periodic->find(axes[a]) != std::string::npos;
   }
@@ -54,7 +55,7 @@ void complete(FrameHeader& header, const InputSpec& spec, const std::string& fil
     if (!header.unsaid.bounds[a]) continue;
     if (!spec.box)
       refuse_lack(spec, file, std::string("where the box ends along ") + axes[a],
-                  "input.box with the lower and upper corner, lo and hi");
+                  "input.box, or --box of info and init, with the lower and upper corner");
     header.box.lo[a] = spec.box->lo[a];
     header.box.hi[a] = spec.box->hi[a];
   }

@@ -8,6 +8,7 @@
 namespace grainvdb::test::init_test {
 namespace {
 
+using ::grainvdb::testing::in_repository;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -72,7 +73,33 @@ TEST(Init, SaysThatItCannotTellContactColumnsApart) {
   const CommandResult made = run_command({"init", "frames/dump0.txt", "--contacts", "c.txt"}, folder.path());
   ASSERT_EQ(made.exit_code, 0) << made.err;
   EXPECT_THAT(made.out, HasSubstr("--contact-compute"));
-  EXPECT_THAT(read_file(folder / "pipeline.yaml"), HasSubstr("  #   c_c[1] c_c[2] c_c[3] c_c[4] c_c[5]\n"));
+  EXPECT_THAT(read_file(folder / "pipeline.yaml"), AllOf(HasSubstr("  #   c_c[1] c_c[2] c_c[3] c_c[4] c_c[5]\n"),
+                                                         HasSubstr("  #   compute: ["), Not(HasSubstr("lammps:"))));
+  EXPECT_EQ(run_command({"validate", "pipeline.yaml"}, folder.path()).exit_code, 0);
+}
+
+TEST(Init, NamesTheTwoComputesOfLammps) {
+  const Folder folder;
+  ASSERT_EQ(run_command({"init", in_repository("sample_dumps/formats/lammps.dump"), "--contacts",
+                         in_repository("sample_dumps/formats/lammps_contacts.dump")},
+                        folder.path())
+                .exit_code,
+            0);
+  EXPECT_THAT(read_file(folder / "pipeline.yaml"), HasSubstr("  #   lammps: {ids: id, forces: force}"));
+}
+
+TEST(Init, TakesTheBoxThatVtkFilesLack) {
+  const Folder folder;
+  const std::string grains = in_repository("sample_dumps/formats/liggghts_ascii_*.vtk");
+  const CommandResult asked = run_command({"init", grains, "--periodic", "x"}, folder.path());
+  EXPECT_EQ(asked.exit_code, 1);
+  EXPECT_THAT(asked.err, HasSubstr("--box of info and init"));
+  const CommandResult made =
+      run_command({"init", grains, "--periodic", "x", "--box", "0", "0", "0", "0.004", "0.01", "0.01"}, folder.path());
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(
+      read_file(folder / "pipeline.yaml"),
+      AllOf(HasSubstr("  periodic: x\n"), HasSubstr("  box: {lo: [0.0, 0.0, 0.0], hi: [0.004, 0.01, 0.01]}\n")));
   EXPECT_EQ(run_command({"validate", "pipeline.yaml"}, folder.path()).exit_code, 0);
 }
 
