@@ -1,6 +1,8 @@
 """Pictures of results. Every function draws into axes that it is given or makes, and returns them."""
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
@@ -83,23 +85,41 @@ def _arrows(fields: Fields, ax: Axes, vectors: np.ndarray, across: str, up: str)
               part[..., AXES.index(up)], color="white", pivot="middle", width=0.006)
 
 
+def _layers(values: np.ndarray, axis: str) -> tuple[np.ma.MaskedArray, np.ma.MaskedArray]:
+    """Mean and standard deviation over the voxels of each layer across an axis that have a value."""
+    others = tuple(k for k, other in enumerate("zyx") if other != axis)
+    layers = np.ma.masked_invalid(values)
+    return layers.mean(axis=others), layers.std(axis=others)
+
+
 def profile(fields: Fields, name: str, axis: str = "z", time: int = -1, ax: Axes | None = None) -> Axes:
     """The mean over each layer across an axis, with the spread of the voxels as a band and, where the result has
     `<name>_error`, the standard error of the mean as bars (the errors of neighbouring voxels taken as one)."""
     ax = ax or plt.subplots()[1]
-    others = tuple(k for k, other in enumerate("zyx") if other != axis)
     values, text = scalar(fields, name, time)
-    layers = np.ma.masked_invalid(values)
-    mean, spread = layers.mean(axis=others), layers.std(axis=others)
+    mean, spread = _layers(values, axis)
     at = fields.axis(axis)
     ax.fill_betweenx(at, mean - spread, mean + spread, alpha=0.2, linewidth=0)
     error = f"{name}_error"
     if error in fields and fields.values(error, time).ndim == 3:
-        bars = np.ma.masked_invalid(fields.values(error, time).astype(float)).mean(axis=others)
+        bars, _ = _layers(fields.values(error, time).astype(float), axis)
         ax.errorbar(mean, at, xerr=bars, fmt="o-", markersize=3, linewidth=1, capsize=2)
     else:
         ax.plot(mean, at, "o-", markersize=3, linewidth=1)
     ax.set(xlabel=text, ylabel=label(axis, fields.unit(axis)))
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def scales(results: Mapping[str, Fields], name: str, axis: str = "z", time: int = -1, ax: Axes | None = None) -> Axes:
+    """The mean over each layer across an axis, from results of several cutoffs and voxels by their names. Where the lines fall
+    together the field does not depend on the cutoff."""
+    ax = ax or plt.subplots()[1]
+    for scale, fields in results.items():
+        values, text = scalar(fields, name, time)
+        mean, _ = _layers(values, axis)
+        ax.plot(mean, fields.axis(axis), "o-", markersize=2, linewidth=1, label=scale)
+        ax.set(xlabel=text, ylabel=label(axis, fields.unit(axis)))
     ax.grid(alpha=0.3)
     return ax
 

@@ -11,6 +11,7 @@ import contextlib
 import html
 import io
 import os
+import re
 import sys
 from dataclasses import dataclass, field
 from typing import Callable, Iterator
@@ -149,6 +150,16 @@ def _profiles(page: _Page, fields: Fields, axis: str) -> None:
     page.add("Profiles", page.picture("profiles", _panels(draw, 3, (3.6, 3.2)), caption))
 
 
+def _scales(page: _Page, results: dict[str, Fields], axis: str) -> None:
+    first = next(iter(results.values()))
+    draw = [lambda ax, n=n: plots.scales(results, n, axis, ax=ax) for n in _ordered(first.names, _PROFILE_FIRST)]
+    figure = _panels(draw, 3, (3.6, 3.2))
+    figure.axes[0].legend(fontsize="small")
+    caption = (f"Means over each layer of voxels across {axis} by cutoff (c) and voxel (h) [{first.unit('x')}]. "
+               "Lines that fall together: the field does not depend on the cutoff there.")
+    page.add("Scales", page.picture("scales", figure, caption))
+
+
 def _rheology(page: _Page, fields: Fields, fitted: tuple[float, float, float, float] | None) -> None:
     draw: list[Callable[[Axes], object]] = []
     said = []
@@ -208,19 +219,34 @@ def _provenance(page: _Page, provenance: dict[str, str]) -> None:
     page.add("Provenance", *parts)
 
 
+def _folders_of_scales(folder: str) -> list[str]:
+    """What the section `scales` of a pipeline leaves in an output folder, by ascending cutoff: c0.0024_h0.0004, …"""
+    found = []
+    for name in os.listdir(folder) if os.path.isdir(folder) else []:
+        scale = re.fullmatch(r"c([^_]+)_h([^_]+)", name)
+        if scale and os.path.isfile(os.path.join(folder, name, "fields.hdf")):
+            found.append((float(scale[1]), float(scale[2]), name))
+    return [name for *_, name in sorted(found)]
+
+
 def write_report(folder: str, output: str | None = None, axis: str = "z", cut: str | None = None, at: float | None = None,
                  fitted: tuple[float, float, float, float] | None = None) -> list[str]:
-    """Writes report.html and its pictures into `output` (DIR/report unless given) and returns the files.
+    """Writes report.html and its pictures into `output` (DIR/report unless given) and returns the files. Of several scales
+    it compares the profiles; a page of each, with its provenance, is made from its own folder.
 
     Raises FileNotFoundError when the folder holds no result, and hdf.ResultError for files that are something else.
     """
     have = {name: os.path.isfile(os.path.join(folder, name)) for name in ("fields.hdf", "tracers.h5", "tables.h5")}
-    if not any(have.values()):
+    at_scales = _folders_of_scales(folder)
+    if not any(have.values()) and not at_scales:
         raise FileNotFoundError(f"{folder}: neither fields.hdf nor tracers.h5 nor tables.h5 is there; expected the output folder of `grainvdb run`")
     output = output or os.path.join(folder, "report")
     page = _Page(f"grainvdb: {os.path.basename(os.path.abspath(folder))}")
     with contextlib.ExitStack() as stack:
         provenance: dict[str, str] = {}
+        if at_scales:
+            results = {name: stack.enter_context(Fields(os.path.join(folder, name))) for name in at_scales}
+            _scales(page, results, axis)
         if have["fields.hdf"]:
             fields = stack.enter_context(Fields(folder))
             provenance = fields.provenance
@@ -241,7 +267,8 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
             provenance = provenance or tables.provenance
             for table in tables.values():
                 _measured(page, table)
-        _provenance(page, provenance)
+        if provenance:
+            _provenance(page, provenance)
     return list(_write(page, output))
 
 
@@ -259,7 +286,7 @@ def _write(page: _Page, output: str) -> Iterator[str]:
 def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="grainvdb report", description="Makes one self-contained HTML page, and PNG pictures, from a result.",
                                      epilog="Example: grainvdb report output && xdg-open output/report/report.html")
-    parser.add_argument("folder", metavar="DIR", help="the output folder of a run, with fields.hdf, tracers.h5 or tables.h5")
+    parser.add_argument("folder", metavar="DIR", help="the output folder of a run, with fields.hdf, tracers.h5 or tables.h5, or a folder for each scale")
     parser.add_argument("-o", "--output", metavar="DIR", help="where the report goes; DIR/report unless given")
     parser.add_argument("--axis", choices=AXES, default="z", help="axis of the profiles (default: %(default)s)")
     parser.add_argument("--cut", choices=AXES, help="axis across which slices are taken; the one with the fewest voxels unless given")
@@ -269,10 +296,10 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         files = write_report(options.folder, options.output, options.axis, options.cut, options.at, options.fitted)
     except (FileNotFoundError, hdf.ResultError) as error:
-        print(f"grainvdb report: error: {error}", file=sys.stderr)
+        print(f"grainvdb: {error}", file=sys.stderr)
         return 2
     except OSError as error:
-        print(f"grainvdb report: error: {error}", file=sys.stderr)
+        print(f"grainvdb: {error}", file=sys.stderr)
         return 3
     for path in files:
         print(f"wrote {path}")

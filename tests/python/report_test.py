@@ -9,8 +9,8 @@ import unittest
 
 import numpy as np
 
-from grainvdb import laws
-from support import COMMAND, reduced, result, write_tracers
+from grainvdb import laws, open_fields, plots
+from support import COMMAND, at_scales, reduced, result, write_tracers
 
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -76,6 +76,19 @@ class Report(unittest.TestCase):
             self.assertEqual(report(self.folder, "--output", self.folder / name).returncode, 0)
             pages.append((self.folder / name / "report.html").read_bytes())
         self.assertEqual(*pages)
+
+    def test_scales_are_compared_in_one_picture(self):
+        with tempfile.TemporaryDirectory() as page:
+            done = report(at_scales(), "--output", page)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(_Page((pathlib.Path(page) / "report.html").read_text()).headings, ["Scales"])
+        results = {name: open_fields(at_scales() / name) for name in ("c0.0016_h0.0004", "c0.0024_h0.0008")}
+        lines = plots.scales(results, "phi").get_lines()
+        self.assertEqual([line.get_label() for line in lines], list(results))
+        for line, fields in zip(lines, results.values()):
+            np.testing.assert_allclose(line.get_xdata(), fields["phi"].mean(("x", "y")))
+            np.testing.assert_array_equal(line.get_ydata(), fields.axis("z"))
+            fields.close()
 
     def test_says_what_is_wrong(self):
         with tempfile.TemporaryDirectory() as empty:

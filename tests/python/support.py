@@ -29,6 +29,15 @@ def reduced() -> pathlib.Path:
 
 
 @functools.cache
+def at_scales() -> pathlib.Path:
+    """The output folder of two cutoffs, computed in one pass."""
+    folder = pathlib.Path(_kept.name) / "scales"
+    subprocess.run([COMMAND, "run", ROOT / "pipelines/plateau.yaml", "--set", "scales={cutoff: [1.6e-3, 2.4e-3], voxel: [0.4e-3, 0.8e-3]}",
+                    "--set", "output.fields=[phi]", "--frames", ":1", "--output", folder, "--quiet"], check=True)
+    return folder
+
+
+@functools.cache
 def measured() -> pathlib.Path:
     """The output folder of the shipped measurements of structure."""
     folder = pathlib.Path(_kept.name) / "measured"
