@@ -188,6 +188,16 @@ def mask_reasons(fields: Fields, time: int = -1, ax: Axes | None = None) -> Axes
     return ax
 
 
+def seconds_by_step(seconds: Mapping[str, float], ax: Axes | None = None) -> Axes:
+    """How long the steps of a run took [s], as `run.json` has them; steps overlap."""
+    ax = ax or plt.subplots()[1]
+    bars = ax.barh(list(reversed(seconds)), list(reversed(seconds.values())), color="0.5")
+    ax.bar_label(bars, fmt="%.3g", padding=3)
+    ax.set(xlabel="time [s]")
+    ax.margins(x=0.15)
+    return ax
+
+
 def tracer_paths(tracers: Tracers, ax: Axes | None = None, across: str = "x", up: str = "z", colour: str = "strain") -> Axes:
     """Paths of tracers, coloured by what was recorded along them."""
     ax = ax or plt.subplots()[1]

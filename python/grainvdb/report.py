@@ -10,11 +10,12 @@ import base64
 import contextlib
 import html
 import io
+import json
 import os
 import re
 import sys
 from dataclasses import dataclass, field
-from typing import Callable, Iterator
+from typing import Any, Callable, Iterator
 
 import matplotlib
 
@@ -213,6 +214,30 @@ def _measured(page: _Page, table: Table) -> None:
     page.add(f"Measured: {table.name.replace('_', ' ')}", *parts)
 
 
+def _record(path: str) -> dict[str, Any]:
+    """What a run took. Raises hdf.ResultError where it is not what `grainvdb run` writes."""
+    numbers = {"wall_seconds", "peak_memory_bytes", "frames", "bytes_read", "seconds_by_step"}
+    with open(path, encoding="utf-8") as file:
+        try:
+            record = json.load(file)
+        except ValueError as error:
+            raise hdf.ResultError(f"{path}: no JSON: {error}; run again, or remove it") from error
+    if not isinstance(record, dict) or not numbers <= set(record):
+        raise hdf.ResultError(f"{path}: not what `grainvdb run` writes; expected {', '.join(sorted(numbers))}")
+    return record
+
+
+def _run(page: _Page, record: dict[str, Any]) -> None:
+    seconds = record["seconds_by_step"]
+    rows = [("time", f"{record['wall_seconds']:.2f} s"), ("memory at most", f"{record['peak_memory_bytes'] / 1e6:.0f} MB"),
+            ("read", f"{record['frames']} frames, {record['bytes_read'] / 1e6:.1f} MB")]
+    parts = [_table(rows)]
+    if seconds:
+        figure = _panels([lambda ax: plots.seconds_by_step(seconds, ax)], 1, (7, 0.4 * len(seconds) + 1))
+        parts.append(page.picture("run", figure, "Seconds by step of the run; steps overlap."))
+    page.add("What the run took", *parts)
+
+
 def _provenance(page: _Page, provenance: dict[str, str]) -> None:
     parts = [f"<details{' open' if key == 'pipeline' else ''}><summary>{html.escape(key.replace('_', ' '))}</summary><pre>{html.escape(value)}</pre></details>"
              for key, value in sorted(provenance.items(), key=lambda item: (item[0] != "pipeline", item[0])) if value.strip()]
@@ -236,9 +261,9 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
 
     Raises FileNotFoundError when the folder holds no result, and hdf.ResultError for files that are something else.
     """
-    have = {name: os.path.isfile(os.path.join(folder, name)) for name in ("fields.hdf", "tracers.h5", "tables.h5")}
+    have = {name: os.path.isfile(os.path.join(folder, name)) for name in ("fields.hdf", "tracers.h5", "tables.h5", "run.json")}
     at_scales = _folders_of_scales(folder)
-    if not any(have.values()) and not at_scales:
+    if not any(have[name] for name in ("fields.hdf", "tracers.h5", "tables.h5")) and not at_scales:
         raise FileNotFoundError(f"{folder}: neither fields.hdf nor tracers.h5 nor tables.h5 is there; expected the output folder of `grainvdb run`")
     output = output or os.path.join(folder, "report")
     page = _Page(f"grainvdb: {os.path.basename(os.path.abspath(folder))}")
@@ -267,6 +292,8 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
             provenance = provenance or tables.provenance
             for table in tables.values():
                 _measured(page, table)
+        if have["run.json"]:
+            _run(page, _record(os.path.join(folder, "run.json")))
         if provenance:
             _provenance(page, provenance)
     return list(_write(page, output))

@@ -101,9 +101,10 @@ int bad_command_line(const CLI::App& app, const CLI::ParseError& error) {
                              " --help' for usage.");
 }
 
-// What the memory of a run is must not depend on how long it takes. Columns of frames go back to the system when a frame is
-// done; otherwise the allocator learns from the first ones to keep what is smaller than 32 MB in its heaps. And threads
-// share heaps: with one each, what one frees is of no use to the others, and the holes grow from frame to frame.
+// What the memory of a run is must not depend on how long it takes. Columns of frames go back to the system when a
+// frame is done; otherwise the allocator learns from the first ones to keep what is smaller than 32 MB in its heaps.
+// And threads share heaps: with one each, what one frees is of no use to the others, and the holes grow from frame to
+// frame.
 void bound_heaps() {
 #ifdef __GLIBC__
   constexpr int large = 4 << 20;

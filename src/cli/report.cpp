@@ -6,8 +6,7 @@
 #include <locale>
 #include <sstream>
 
-#include <sys/resource.h>
-
+#include "cli/peak_memory.hpp"
 #include "grainvdb/mask.hpp"
 #include "pipeline/number.hpp"
 
@@ -38,13 +37,6 @@ std::string files_written(const std::vector<std::string>& files) {
   if (hdf5.empty()) return text;
   return text + "look at it:\n  paraview " + (series.empty() ? hdf5 : series) +
          "\n  python3 -c \"import h5py; print(list(h5py.File('" + hdf5 + "')['VTKHDF/PointData']))\"\n";
-}
-
-/// Of this process so far [byte].
-double peak_memory() {
-  struct rusage usage {};
-  getrusage(RUSAGE_SELF, &usage);
-  return 1024.0 * static_cast<double>(usage.ru_maxrss);
 }
 
 std::string describe_trace(const TraceReport& trace) {

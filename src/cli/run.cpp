@@ -21,6 +21,7 @@
 #include "cli/progress_json.hpp"
 #include "cli/progress_line.hpp"
 #include "cli/report.hpp"
+#include "cli/run_record.hpp"
 #include "grainvdb/follow.hpp"
 #include "grainvdb/scales.hpp"
 #include "grainvdb/table_sink.hpp"
@@ -146,6 +147,7 @@ void run_once(const Pipeline& pipeline, const RunOptions& options) {
                            show);
   });
   write_tables(report, options.output);
+  write_run_record(report, options.output);
   warn(options, warnings(report));
   if (!options.quiet) std::cout << describe(report);
 }
@@ -177,8 +179,11 @@ void run_at_scales(const Pipeline& pipeline, const RunOptions& options) {
   std::vector<RunReport> reports = with_progress(options, [&](const auto& show) {
     return run_scales(runs, *open_input(runs.front().pipeline, runs.front().plan), show);
   });
-  for (std::size_t n = 0; n < runs.size(); ++n)
-    write_tables(reports[n], folder_of_scale(options.output, runs[n].pipeline));
+  for (std::size_t n = 0; n < runs.size(); ++n) {
+    const std::string folder = folder_of_scale(options.output, runs[n].pipeline);
+    write_tables(reports[n], folder);
+    write_run_record(reports[n], folder);
+  }
   warn(options, warnings(reports, names));
   if (options.quiet) return;
   for (std::size_t n = 0; n < runs.size(); ++n) std::cout << names[n] << '\n' << describe(reports[n]);

@@ -83,6 +83,12 @@ std::vector<std::string> Folder::names_in(const std::string& folder) const {
   return names;
 }
 
+std::vector<std::string> Folder::results_in(const std::string& folder) const {
+  std::vector<std::string> names = names_in(folder);
+  std::erase(names, "run.json");
+  return names;
+}
+
 std::string read_file(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;

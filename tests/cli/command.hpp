@@ -35,6 +35,8 @@ class Folder {
   std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
   void write(const std::string& name, const std::string& text) const;
   std::vector<std::string> names_in(const std::string& folder) const;
+  /// Those of the results, which are the same for the same pipeline and dumps; `run.json` is what it took to make them.
+  std::vector<std::string> results_in(const std::string& folder) const;
 
  private:
   std::filesystem::path path_;

@@ -66,7 +66,7 @@ void expect_plain_result(const Folder& folder, const std::vector<std::string>& s
   const CommandResult plain = run_command(words, folder.path());
   ASSERT_EQ(plain.exit_code, 0) << plain.err;
   EXPECT_EQ(folder.names_in("followed"), folder.names_in("plain"));
-  for (const std::string& name : folder.names_in("plain"))
+  for (const std::string& name : folder.results_in("plain"))
     EXPECT_TRUE(read_file(folder / ("plain/" + name)) == read_file(folder / ("followed/" + name))) << name;
 }
 

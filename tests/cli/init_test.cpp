@@ -28,7 +28,7 @@ TEST(Init, WritesAFileThatRuns) {
                     HasSubstr("    - gd_over_dv")));
   const CommandResult run = run_command({"run", "my.yaml", "-o", "out"}, folder.path());
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(folder.names_in("out"), ::testing::ElementsAre("fields.hdf"));
+  EXPECT_THAT(folder.names_in("out"), ::testing::ElementsAre("fields.hdf", "run.json"));
 }
 
 TEST(Init, AsksOnlyForWhatTheDumpsGive) {

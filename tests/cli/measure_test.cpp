@@ -28,7 +28,7 @@ TEST(Measure, MakesTablesWithoutALattice) {
   for (const char* command : {"measure", "run"}) {
     const CommandResult result = run_command({command, "p.yaml", "-o", command}, folder.path());
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_THAT(folder.names_in(command), ElementsAre("tables", "tables.h5"));
+    EXPECT_THAT(folder.names_in(command), ElementsAre("run.json", "tables", "tables.h5"));
     EXPECT_THAT(result.out, AllOf(StartsWith("3 frames\n"), HasSubstr("table pair_correlation: 20 rows\n"),
                                   HasSubstr("closest 1 m"), HasSubstr(std::string("wrote ") + command + "/tables.h5")));
     EXPECT_EQ(result.err, "");
@@ -40,9 +40,10 @@ TEST(Measure, LeavesOutFieldsAndTracers) {
   write_dumps(folder);
   folder.write("p.yaml", pipeline_text() + of_frames + "trace: {seeds: {points: [[1, 1, 1.25]]}, steps: 2}\n");
   ASSERT_EQ(run_command({"measure", "p.yaml", "-o", "alone"}, folder.path()).exit_code, 0);
-  EXPECT_THAT(folder.names_in("alone"), ElementsAre("tables", "tables.h5"));
+  EXPECT_THAT(folder.names_in("alone"), ElementsAre("run.json", "tables", "tables.h5"));
   ASSERT_EQ(run_command({"run", "p.yaml", "-o", "all"}, folder.path()).exit_code, 0);
-  EXPECT_THAT(folder.names_in("all"), ElementsAre("fields.hdf", "tables", "tables.h5", "tracers.h5", "tracers.xmf2"));
+  EXPECT_THAT(folder.names_in("all"),
+              ElementsAre("fields.hdf", "run.json", "tables", "tables.h5", "tracers.h5", "tracers.xmf2"));
   EXPECT_EQ(read_file(folder / "all/tables/pair_correlation.csv"),
             read_file(folder / "alone/tables/pair_correlation.csv"));
 }
@@ -53,7 +54,7 @@ TEST(Measure, MakesTablesOfFieldsThatAreNotWritten) {
   folder.write("p.yaml", pipeline_text() + of_fields);
   const CommandResult result = run_command({"measure", "p.yaml", "-o", "t"}, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(folder.names_in("t"), ElementsAre("tables", "tables.h5"));
+  EXPECT_THAT(folder.names_in("t"), ElementsAre("run.json", "tables", "tables.h5"));
   EXPECT_THAT(result.out, HasSubstr("1 channel splatted per frame"));
 }
 

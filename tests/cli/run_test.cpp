@@ -17,7 +17,7 @@ TEST(Run, WritesTheFieldsAndSaysWhere) {
   write_example(folder);
   const CommandResult result = run_command({"run", "p.yaml"}, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(folder.names_in("output"), ElementsAre("fields.hdf"));
+  EXPECT_THAT(folder.names_in("output"), ElementsAre("fields.hdf", "run.json"));
   EXPECT_EQ(read_file(folder / "output/fields.hdf").substr(1, 3), "HDF");
   // The kernel covers the box of 8³ voxels.
   EXPECT_THAT(result.out, AllOf(HasSubstr("3 frames, 512 active voxels"), HasSubstr("wrote output/fields.hdf"),
@@ -69,7 +69,7 @@ TEST(Run, FramesAndOutputAndThreadsAreObeyed) {
   EXPECT_THAT(frames("::2"), HasSubstr("2 frames,"));
   EXPECT_THAT(frames("1"), HasSubstr("1 frame,"));
   EXPECT_THAT(frames("-2:"), HasSubstr("2 frames,"));
-  EXPECT_THAT(folder.names_in("a/b"), ElementsAre("fields.hdf"));
+  EXPECT_THAT(folder.names_in("a/b"), ElementsAre("fields.hdf", "run.json"));
   EXPECT_FALSE(std::filesystem::exists(folder / "output"));
 }
 
@@ -95,7 +95,8 @@ TEST(Run, ASeriesSaysHowToOpenIt) {
       run_command({"run", "p.yaml", "--set", "average.window=1", "--set", "output.formats=[hdf5, vdb]"}, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, AllOf(HasSubstr("paraview output/fields.xmf2"), HasSubstr("1 more file beside them")));
-  EXPECT_EQ(folder.names_in("output").size(), 5U);  // the fields, the sidecar and one VDB file per output time
+  // The fields, the sidecar, one VDB file per output time and run.json.
+  EXPECT_EQ(folder.names_in("output").size(), 6U);
 }
 
 TEST(Run, QuietPrintsNothing) {
@@ -114,7 +115,7 @@ TEST(Run, OverridesWinOverTheFile) {
       folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr(" 64 active voxels"));
-  EXPECT_THAT(folder.names_in("output"), ElementsAre("fields.hdf", "fields.vdb"));
+  EXPECT_THAT(folder.names_in("output"), ElementsAre("fields.hdf", "fields.vdb", "run.json"));
 }
 
 TEST(Run, AFailureLeavesAnEarlierResultAlone) {
@@ -127,7 +128,7 @@ TEST(Run, AFailureLeavesAnEarlierResultAlone) {
   const CommandResult result = run_command({"run", "p.yaml", "--set", "output.fields=[phi]"}, folder.path());
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, AllOf(HasSubstr("dump200.txt:"), HasSubstr("2,5")));
-  EXPECT_THAT(folder.names_in("output"), ElementsAre("fields.hdf"));
+  EXPECT_THAT(folder.names_in("output"), ElementsAre("fields.hdf", "run.json"));
   EXPECT_TRUE(before == read_file(folder / "output/fields.hdf"));
 }
 

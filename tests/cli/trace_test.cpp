@@ -36,7 +36,7 @@ TEST(Trace, GoesAlongWithARun) {
   const CommandResult result = run_command({"run", "p.yaml", "--set", "average.window=1", "-o", "both"}, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(folder.names_in("both"),
-              ElementsAre("fields.hdf", "fields.xmf2", "tracers.dump", "tracers.h5", "tracers.xmf2"));
+              ElementsAre("fields.hdf", "fields.xmf2", "run.json", "tracers.dump", "tracers.h5", "tracers.xmf2"));
   EXPECT_THAT(result.out, HasSubstr("trace: 2 tracers, 3 samples"));
   EXPECT_EQ(result.err, "");
 }

@@ -59,10 +59,11 @@ class Report(unittest.TestCase):
 
     def test_page_holds_everything(self):
         write_tracers(self.folder)
+        shutil.copy(result() / "run.json", self.folder)
         done = report(self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
         page = _Page((self.folder / "report/report.html").read_text())
-        self.assertEqual(page.headings, ["Overview", "Slices", "Profiles", "Rheology", "Where fields have no value", "Fields", "Tracers", "Provenance"])
+        self.assertEqual(page.headings, ["Overview", "Slices", "Profiles", "Rheology", "Where fields have no value", "Fields", "Tracers", "What the run took", "Provenance"])
         self.assertEqual(page.loads, [])
         shown = [base64.b64decode(source.split(",")[1]) for source in page.pictures]
         self.assertTrue(all(picture.startswith(PNG) for picture in shown))
