@@ -1,6 +1,8 @@
 #include "pipeline/species.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "grainvdb/error.hpp"
 #include "pipeline/number.hpp"
@@ -65,9 +67,11 @@ std::string to_string(const Species& species) {
   }
   if (species.ids)
     criteria.push_back("ids " + std::to_string(species.ids->first) + " to " + std::to_string(species.ids->second));
-  if (species.diameter)
-    criteria.push_back("diameter from " + print_number(species.diameter->first) + " to below " +
-                       print_number(species.diameter->second));
+  if (species.diameter) {
+    std::string diameter = "diameter from " + print_number(species.diameter->first);
+    if (std::isfinite(species.diameter->second)) diameter += " to below " + print_number(species.diameter->second);
+    criteria.push_back(std::move(diameter));
+  }
   std::string text = species.name + ':';
   for (std::size_t n = 0; n < criteria.size(); ++n) text += (n == 0 ? " " : " and ") + criteria[n];
   return text;
