@@ -181,7 +181,7 @@ void BinaryDump::refuse_value(double value, std::size_t column, std::size_t row,
                std::to_string(value), expected);
 }
 
-void BinaryDump::take_row(const std::vector<double>& row, const TableRequest& request, Table& table) const {
+void BinaryDump::take_row(const std::vector<double>& row, const TableRequest& request, DumpTable& table) const {
   for (std::size_t k = 0; k < request.real.size(); ++k) {
     const double value = row[request.real[k]];
     if (!std::isfinite(value)) refuse_value(value, request.real[k], table.rows, "a finite number");
@@ -195,8 +195,8 @@ void BinaryDump::take_row(const std::vector<double>& row, const TableRequest& re
   ++table.rows;
 }
 
-Table BinaryDump::read_rows(const TableRequest& request) {
-  Table table;
+DumpTable BinaryDump::read_rows(const TableRequest& request) {
+  DumpTable table;
   table.first_line = 1;
   table.real.resize(request.real.size());
   table.whole.resize(request.whole.size());

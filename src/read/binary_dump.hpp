@@ -30,7 +30,7 @@ class BinaryDump final : public DumpFile {
   std::optional<FrameHeader> next_header() override;
   bool skip_rows() override;
   /// In place of lines rows are counted, from 1.
-  Table read_rows(const TableRequest& request) override;
+  DumpTable read_rows(const TableRequest& request) override;
   bool at_end() override { return reader_.at_end(); }
   void seek(const TextPosition& start) override { reader_.seek(start.offset); }
 
@@ -40,7 +40,7 @@ class BinaryDump final : public DumpFile {
   void read_names(FrameHeader& header);
   std::string read_text(const std::string& what);
   std::size_t next_chunk(std::size_t left);
-  void take_row(const std::vector<double>& row, const TableRequest& request, Table& table) const;
+  void take_row(const std::vector<double>& row, const TableRequest& request, DumpTable& table) const;
   [[noreturn]] void refuse_value(double value, std::size_t column, std::size_t row, const std::string& expected) const;
 
   BinaryReader reader_;

@@ -56,7 +56,7 @@ Location stated_at(const InputSpec& spec, std::string key) {
   }
 }
 
-void check_ids(const std::vector<std::int64_t>& ids, std::string_view column, const Table& table,
+void check_ids(const std::vector<std::int64_t>& ids, std::string_view column, const DumpTable& table,
                const std::string& file) {
   constexpr std::int64_t limit = std::int64_t{1} << 53;
   const auto bad = std::find_if(ids.begin(), ids.end(), [](std::int64_t id) { return id < 1 || id >= limit; });

@@ -24,8 +24,8 @@ class ColumnFinder {
   bool has(std::string_view name) const;
   bool has_all(const std::array<std::string, 3>& names) const;
 
-  /// Requests a column that is there; returns its index in Table::real or Table::whole. Asking twice gives the same
-  /// index. Throws InputError when two columns bear the name.
+  /// Requests a column that is there; returns its index in DumpTable::real or DumpTable::whole. Asking twice gives the
+  /// same index. Throws InputError when two columns bear the name.
   std::size_t real(std::string_view name);
   std::size_t whole(std::string_view name);
   std::array<std::size_t, 3> real3(const std::array<std::string, 3>& names);
@@ -49,7 +49,7 @@ Location stated_at(const InputSpec& spec, std::string key);
 
 /// Ids of a table must be positive and, as some codes keep them as doubles, below 2^53. Throws InputError for the first
 /// that is not.
-void check_ids(const std::vector<std::int64_t>& ids, std::string_view column, const Table& table,
+void check_ids(const std::vector<std::int64_t>& ids, std::string_view column, const DumpTable& table,
                const std::string& file);
 
 }  // namespace grainvdb

@@ -216,7 +216,7 @@ std::vector<Real3> request_force(ColumnFinder& finder, const ForceNames& force) 
   return {finder.real3(*force.normal), finder.real3(*force.tangential)};
 }
 
-Columns3 total_force(const Table& table, const std::vector<Real3>& parts) {
+Columns3 total_force(const DumpTable& table, const std::vector<Real3>& parts) {
   Columns3 total;
   for (std::size_t a = 0; a < 3; ++a) {
     total[a].assign(table.rows, 0.0);

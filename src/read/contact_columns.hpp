@@ -61,7 +61,7 @@ ForceNames force_names(const ColumnMap& columns);
 
 std::optional<Names3> names3(const ColumnMap& columns, const std::string& key);
 
-/// Three columns of a table: indices into Table::real.
+/// Three columns of a table: indices into DumpTable::real.
 using Real3 = std::array<std::size_t, 3>;
 
 /// Collects what a dump lacks, to say it all at once.
@@ -81,7 +81,7 @@ class MissingColumns {
 
 /// The total force, or its two parts, to be summed.
 std::vector<Real3> request_force(ColumnFinder& finder, const ForceNames& force);
-Columns3 total_force(const Table& table, const std::vector<Real3>& parts);
+Columns3 total_force(const DumpTable& table, const std::vector<Real3>& parts);
 
 /// Throws InputError where a column is asked for as an id and as another quantity.
 void refuse_double_use(const ColumnFinder& finder, const ContactSection& section);

@@ -53,8 +53,8 @@ ContactNames plain_names(const ColumnFinder& finder) {
 
 /// The order of ascending (id1, id2). Throws InputError for the first contact of a particle with itself, or else the
 /// least pair that comes twice, in whichever order of its ids.
-RowOrder order_of_pairs(const std::vector<std::int64_t>& id1, const std::vector<std::int64_t>& id2, const Table& table,
-                        const std::string& file) {
+RowOrder order_of_pairs(const std::vector<std::int64_t>& id1, const std::vector<std::int64_t>& id2,
+                        const DumpTable& table, const std::string& file) {
   std::vector<std::int64_t> low(id1.size()), high(id1.size());
   for (std::size_t i = 0; i < id1.size(); ++i) {
     if (id1[i] == id2[i])
@@ -110,7 +110,8 @@ ContactLayout contact_layout(const FrameHeader& header, const std::string& file,
   return layout;
 }
 
-Contacts make_contacts(const ContactLayout& layout, Table table, const FrameHeader& header, const std::string& file) {
+Contacts make_contacts(const ContactLayout& layout, DumpTable table, const FrameHeader& header,
+                       const std::string& file) {
   std::vector<std::int64_t>&id1 = table.whole[layout.id1], &id2 = table.whole[layout.id2];
   check_ids(id1, header.columns[layout.request.whole[layout.id1]], table, file);
   check_ids(id2, header.columns[layout.request.whole[layout.id2]], table, file);

@@ -12,7 +12,7 @@
 
 namespace grainvdb {
 
-/// Which columns of a table become which quantity: indices into Table::real, or Table::whole for the ids.
+/// Which columns of a table become which quantity: indices into DumpTable::real, or DumpTable::whole for the ids.
 struct ContactLayout {
   TableRequest request;
   std::size_t id1 = 0;
@@ -28,6 +28,7 @@ void check_contact_spec(const InputSpec& spec);
 ContactLayout contact_layout(const FrameHeader& header, const std::string& file, const InputSpec& spec);
 
 /// Checks and converts a table: two different ids per row, each pair once, rows in ascending order of (id1, id2).
-Contacts make_contacts(const ContactLayout& layout, Table table, const FrameHeader& header, const std::string& file);
+Contacts make_contacts(const ContactLayout& layout, DumpTable table, const FrameHeader& header,
+                       const std::string& file);
 
 }  // namespace grainvdb

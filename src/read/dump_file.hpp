@@ -49,7 +49,7 @@ struct TableRequest {
 };
 
 /// The converted columns of a frame, in the order of the request.
-struct Table {
+struct DumpTable {
   std::size_t rows = 0;
   std::size_t first_line = 0;
   std::vector<std::vector<double>> real;
@@ -75,7 +75,7 @@ class DumpFile {
 
   /// After next_header: converts the requested columns of all rows. Every row must have as many fields as the header
   /// has columns, and exactly the announced number of rows must be there; throws InputError otherwise.
-  virtual Table read_rows(const TableRequest& request) = 0;
+  virtual DumpTable read_rows(const TableRequest& request) = 0;
 
   /// Whether nothing follows. After skip_rows or read_rows.
   virtual bool at_end() = 0;

@@ -278,9 +278,9 @@ const FrameHeader& DumpSeries::go_to(std::size_t k) {
   return header_;
 }
 
-Table DumpSeries::read_rows(const TableRequest& request) {
+DumpTable DumpSeries::read_rows(const TableRequest& request) {
   const FrameRecord& frame = frames_[current_];
-  Table table = dump_.dump->read_rows(request);
+  DumpTable table = dump_.dump->read_rows(request);
   if (frame.last_in_file && !dump_.dump->at_end())
     throw InputError({{files_[frame.file].path, table.first_line + table.rows},
                       "the file holds another frame, much smaller than its first",

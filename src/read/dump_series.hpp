@@ -71,7 +71,7 @@ class DumpSeries {
 
   /// Goes to frame k and reads its header; then its rows.
   const FrameHeader& go_to(std::size_t k);
-  Table read_rows(const TableRequest& request);
+  DumpTable read_rows(const TableRequest& request);
 
  private:
   /// Files of the same columns and compression have about the same bytes per row.

@@ -91,7 +91,7 @@ bool MercuryData::skip_rows() {
   return true;
 }
 
-Table MercuryData::read_rows(const TableRequest& request) {
+DumpTable MercuryData::read_rows(const TableRequest& request) {
   const std::size_t written = rows_.columns.size();
   const bool flat = written == written_columns(true).size();
   const auto find = [&](std::string_view name) {
@@ -108,9 +108,9 @@ Table MercuryData::read_rows(const TableRequest& request) {
   };
   take(request.real, there.real);
   take(request.whole, there.whole);
-  Table rows = RowReader(lines_, rows_, data_label, there).read();
+  DumpTable rows = RowReader(lines_, rows_, data_label, there).read();
 
-  Table table{rows.rows, rows.first_line, {}, {}};
+  DumpTable table{rows.rows, rows.first_line, {}, {}};
   auto next = rows.real.begin();
   for (const std::size_t column : request.real) {
     if (column < written) {

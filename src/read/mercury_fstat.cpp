@@ -56,7 +56,7 @@ std::optional<std::vector<double>> marked_numbers(std::string_view line) {
 
 /// Which rows are contacts of the wanted kind, in ascending order of P and I, each counted once: of the two lines of a
 /// pair that with the lower place first. Throws InputError for a negative P and lines that come twice.
-std::vector<std::size_t> counted_once(const Table& rows, bool with_walls, const std::string& file) {
+std::vector<std::size_t> counted_once(const DumpTable& rows, bool with_walls, const std::string& file) {
   const std::vector<std::int64_t>&p = rows.whole[0], &i = rows.whole[1];
   using Pair = std::tuple<std::int64_t, std::int64_t, std::size_t>;
   std::vector<Pair> pairs;
@@ -158,11 +158,11 @@ bool MercuryFstat::skip_rows() {
   return complete_;
 }
 
-Table MercuryFstat::read_rows(const TableRequest& request) {
-  const Table rows = RowReader(lines_, header_, fstat_label, needed_columns(with_walls_)).read();
+DumpTable MercuryFstat::read_rows(const TableRequest& request) {
+  const DumpTable rows = RowReader(lines_, header_, fstat_label, needed_columns(with_walls_)).read();
   const std::vector<std::size_t> counted = counted_once(rows, with_walls_, lines_.file());
   const std::size_t ids = id_count(with_walls_);
-  Table table{counted.size(), rows.first_line, {}, {}};
+  DumpTable table{counted.size(), rows.first_line, {}, {}};
   for (const std::size_t row : counted) table.lines.push_back(rows.line(row));
   for (const std::size_t column : request.whole) {
     if (column >= ids)

@@ -40,7 +40,7 @@ class MercuryFstat final : public DumpFile {
   bool skip_rows() override;
   /// The columns id1 id2 fx fy fz, with walls id fx fy fz cx cy cz, in ascending order of P and I. Has fewer rows than
   /// the header says: see above.
-  Table read_rows(const TableRequest& request) override;
+  DumpTable read_rows(const TableRequest& request) override;
   bool at_end() override { return lines_.at_end(); }
   void seek(const TextPosition& start) override;
 

@@ -164,7 +164,7 @@ ParticleLayout particle_layout(const FrameHeader& header, const std::string& fil
   return layout;
 }
 
-Particles make_particles(const ParticleLayout& layout, Table table, const FrameHeader& header,
+Particles make_particles(const ParticleLayout& layout, DumpTable table, const FrameHeader& header,
                          const std::string& file) {
   const std::size_t n = table.rows;
   check_ids(table.whole[layout.id], "id", table, file);

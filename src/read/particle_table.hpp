@@ -11,7 +11,7 @@
 
 namespace grainvdb {
 
-/// Which columns of a table become which quantity: indices into Table::real, or Table::whole for id and type.
+/// Which columns of a table become which quantity: indices into DumpTable::real, or DumpTable::whole for id and type.
 struct ParticleLayout {
   TableRequest request;
   std::size_t id = 0;
@@ -36,6 +36,7 @@ ParticleLayout particle_layout(const FrameHeader& header, const std::string& fil
 
 /// Checks and converts a table: ids unique, radii and masses positive, rows in ascending order of id. Throws
 /// InputError.
-Particles make_particles(const ParticleLayout& layout, Table table, const FrameHeader& header, const std::string& file);
+Particles make_particles(const ParticleLayout& layout, DumpTable table, const FrameHeader& header,
+                         const std::string& file);
 
 }  // namespace grainvdb

@@ -135,7 +135,7 @@ RowOrder ascending(const std::vector<std::int64_t>& first, const std::vector<std
   return order;
 }
 
-void reorder(Table& table, const RowOrder& order) {
+void reorder(DumpTable& table, const RowOrder& order) {
   if (!order) return;
   reorder_columns(table.real, *order);
   reorder_columns(table.whole, *order);

@@ -20,6 +20,6 @@ RowOrder ascending(const std::vector<std::int64_t>& key);
 RowOrder ascending(const std::vector<std::int64_t>& first, const std::vector<std::int64_t>& second);
 
 /// Puts all columns of a table into an order.
-void reorder(Table& table, const RowOrder& order);
+void reorder(DumpTable& table, const RowOrder& order);
 
 }  // namespace grainvdb

@@ -59,7 +59,7 @@ RowReader::RowReader(LineReader& lines, const FrameHeader& header, const std::st
   table_.whole.resize(request.whole.size());
 }
 
-Table RowReader::read() {
+DumpTable RowReader::read() {
   while (table_.rows < header_.rows) {
     const std::string_view text = lines_.lines();
     if (text.empty()) refuse_end();

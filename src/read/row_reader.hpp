@@ -19,7 +19,7 @@ class RowReader {
   /// Converts the requested columns of all rows. Neither the table nor an error depends on the number of threads: an
   /// error is that of the first line that is wrong. Memory grows with the rows that are there: the count in the header
   /// is never trusted with it. Throws InputError.
-  Table read();
+  DumpTable read();
 
  private:
   std::size_t bytes_left() const;
@@ -36,7 +36,7 @@ class RowReader {
   const std::string& label_;
   RowConverter converter_;
   std::vector<RowBlock> blocks_;
-  Table table_;
+  DumpTable table_;
   std::size_t room_ = 0;   ///< rows that the columns have memory for
   std::size_t bytes_ = 0;  ///< of the rows in the table
 };

@@ -78,8 +78,8 @@ bool TextDump::skip_one_by_one(std::size_t count, std::size_t& left) {
   return true;
 }
 
-Table TextDump::read_rows(const TableRequest& request) {
-  Table table = RowReader(lines_, header_, label_, request).read();
+DumpTable TextDump::read_rows(const TableRequest& request) {
+  DumpTable table = RowReader(lines_, header_, label_, request).read();
   check_end_of_rows();
   return table;
 }

@@ -18,7 +18,7 @@ class TextDump final : public DumpFile {
 
   std::optional<FrameHeader> next_header() override;
   bool skip_rows() override;
-  Table read_rows(const TableRequest& request) override;
+  DumpTable read_rows(const TableRequest& request) override;
   bool at_end() override { return lines_.at_end(); }
   void seek(const TextPosition& start) override { lines_.seek(start); }
 

@@ -88,8 +88,8 @@ std::optional<FrameHeader> VtkDump::next_header() {
   return header_;
 }
 
-Table VtkDump::read_rows(const TableRequest& request) {
-  Table table{header_.rows, 1, {}, {}};
+DumpTable VtkDump::read_rows(const TableRequest& request) {
+  DumpTable table{header_.rows, 1, {}, {}};
   const auto value = [&](std::size_t column, std::size_t row) {
     const Column& from = columns_[column];
     return from.array->values[row * lines_per_contact_ * from.array->components + from.component];

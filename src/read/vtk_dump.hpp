@@ -32,7 +32,7 @@ class VtkDump final : public DumpFile {
   std::optional<FrameHeader> next_header() override;
   bool skip_rows() override { return true; }
   /// In place of lines rows are counted, from 1.
-  Table read_rows(const TableRequest& request) override;
+  DumpTable read_rows(const TableRequest& request) override;
   bool at_end() override { return begun_; }
   void seek(const TextPosition&) override { begun_ = false; }
 

@@ -44,8 +44,8 @@ WallContactNames names_in_map(const ColumnMap& columns) {
   return {one("mesh"), one("triangle"), one("id"), force_names(columns), names3(columns, "point").value_or(Names3{})};
 }
 
-void check_particles(const std::vector<std::int64_t>& found, const std::vector<std::int64_t>& ids, const Table& table,
-                     const std::string& file) {
+void check_particles(const std::vector<std::int64_t>& found, const std::vector<std::int64_t>& ids,
+                     const DumpTable& table, const std::string& file) {
   const auto unknown = std::find_if(found.begin(), found.end(),
                                     [&](std::int64_t id) { return !std::binary_search(ids.begin(), ids.end(), id); });
   if (unknown == found.end()) return;
@@ -71,7 +71,7 @@ std::vector<std::int64_t> ranks(const std::vector<std::int64_t>& mesh, const std
 }
 
 /// Throws InputError for a contact that comes twice.
-RowOrder order_of_walls(const Table& table, const WallContactLayout& layout, const std::string& file) {
+RowOrder order_of_walls(const DumpTable& table, const WallContactLayout& layout, const std::string& file) {
   const std::vector<std::int64_t>& id = table.whole[layout.id];
   if (!layout.wall) return ascending(id);
   const std::vector<std::int64_t>&mesh = table.whole[layout.wall->first], &triangle = table.whole[layout.wall->second];
@@ -138,7 +138,7 @@ WallContactLayout wall_contact_layout(const FrameHeader& header, const std::stri
   return layout;
 }
 
-WallContacts make_wall_contacts(const WallContactLayout& layout, Table table, const FrameHeader& header,
+WallContacts make_wall_contacts(const WallContactLayout& layout, DumpTable table, const FrameHeader& header,
                                 const std::string& file, const std::vector<std::int64_t>& ids) {
   check_ids(table.whole[layout.id], header.columns[layout.request.whole[layout.id]], table, file);
   check_particles(table.whole[layout.id], ids, table, file);

@@ -14,7 +14,7 @@
 
 namespace grainvdb {
 
-/// Which columns of a table become which quantity: indices into Table::real, or Table::whole for ids.
+/// Which columns of a table become which quantity: indices into DumpTable::real, or DumpTable::whole for ids.
 struct WallContactLayout {
   TableRequest request;
   std::size_t id = 0;                                       ///< of the particle
@@ -32,7 +32,7 @@ WallContactLayout wall_contact_layout(const FrameHeader& header, const std::stri
 
 /// Checks and converts a table: every id is one of `ids`, which ascend, each contact with a triangle once; rows are put
 /// into ascending order of id, mesh and triangle. Throws InputError.
-WallContacts make_wall_contacts(const WallContactLayout& layout, Table table, const FrameHeader& header,
+WallContacts make_wall_contacts(const WallContactLayout& layout, DumpTable table, const FrameHeader& header,
                                 const std::string& file, const std::vector<std::int64_t>& ids);
 
 }  // namespace grainvdb

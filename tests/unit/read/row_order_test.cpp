@@ -66,7 +66,7 @@ TEST(RowOrder, IsNothingWhereRowsAreInOrder) {
 TEST(RowOrder, MovesAllColumns) {
   // Enough rows for several threads.
   constexpr std::size_t n = 50'000;
-  Table table;
+  DumpTable table;
   table.rows = n;
   table.whole.resize(1);
   table.real.resize(2);

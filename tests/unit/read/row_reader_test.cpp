@@ -18,7 +18,7 @@ constexpr std::size_t thread_counts[] = {1, 2, 5};
 
 /// What reading a frame gives: a table, or what is thrown.
 struct Outcome {
-  Table table;
+  DumpTable table;
   std::string error;
 };
 
@@ -77,7 +77,7 @@ const std::string columns = "id x y z w type";
 const TableRequest every_column{{1, 2, 3, 4}, {0, 5}};
 
 /// Token by token.
-void expect_holds(const Table& table, const std::vector<std::string>& rows, const TableRequest& request) {
+void expect_holds(const DumpTable& table, const std::vector<std::string>& rows, const TableRequest& request) {
   ASSERT_EQ(table.rows, rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     std::string_view line = rows[i];
