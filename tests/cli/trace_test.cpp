@@ -23,7 +23,7 @@ TEST(Trace, WritesHistoriesAlone) {
   add_trace(folder, "  steps: 4\n  record: [phi, shear_rate]\n");
   const CommandResult result = run_command({"trace", "p.yaml", "-o", "paths"}, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(folder.names_in("paths"), ElementsAre("tracers.h5", "tracers.xmf2"));
+  EXPECT_THAT(folder.names_in("paths"), ElementsAre("run.json", "tracers.h5", "tracers.xmf2"));
   EXPECT_THAT(result.out,
               AllOf(HasSubstr("trace: 2 tracers, 5 samples: 2 moving to the end"), HasSubstr("wrote paths/tracers.h5"),
                     HasSubstr("paraview paths/tracers.xmf2"), HasSubstr("particles/tracers")));
