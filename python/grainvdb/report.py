@@ -245,7 +245,7 @@ def _provenance(page: _Page, provenance: dict[str, str]) -> None:
 
 
 def _folders_of_scales(folder: str) -> list[str]:
-    """What the section `scales` of a pipeline leaves in an output folder, by ascending cutoff: c0.0024_h0.0004, …"""
+    """What the section `scales` of a pipeline leaves in an output folder, by ascending cutoff: c0.0024_h4.0e-04, …"""
     found = []
     for name in os.listdir(folder) if os.path.isdir(folder) else []:
         scale = re.fullmatch(r"c([^_]+)_h([^_]+)", name)

@@ -83,7 +83,7 @@ class Report(unittest.TestCase):
             done = report(at_scales(), "--output", page)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertEqual(_Page((pathlib.Path(page) / "report.html").read_text()).headings, ["Scales"])
-        results = {name: open_fields(at_scales() / name) for name in ("c0.0016_h0.0004", "c0.0024_h0.0008")}
+        results = {name: open_fields(at_scales() / name) for name in ("c0.0016_h4.0e-04", "c0.0024_h8.0e-04")}
         lines = plots.scales(results, "phi").get_lines()
         self.assertEqual([line.get_label() for line in lines], list(results))
         for line, fields in zip(lines, results.values()):
