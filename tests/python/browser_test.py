@@ -28,7 +28,7 @@ class Browser(unittest.TestCase):
             files = write_report(str(result()), str(folder))
             page = (folder / "report.html").read_text()
             (folder / "looked_at.html").write_text(page.replace("</body>", LOOK))
-            shown = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--window-size={WIDTH},900", "--dump-dom",
+            shown = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", f"--window-size={WIDTH},900", "--dump-dom",
                                     f"--user-data-dir={folder / 'profile'}", f"file://{folder / 'looked_at.html'}"],
                                    capture_output=True, text=True, timeout=300, check=True).stdout
         widths, verdict = re.search(r"<title>(.*) \| (.*)</title>", shown).groups()
