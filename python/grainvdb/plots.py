@@ -170,6 +170,15 @@ def friction_against_inertial(fields: Fields, time: int = -1, ax: Axes | None = 
     return ax
 
 
+def _bars(ax: Axes, numbers: Mapping[str, float], style: str, xlabel: str) -> Axes:
+    """A bar for each number, the first on top."""
+    bars = ax.barh(list(reversed(numbers)), list(reversed(numbers.values())), color="0.5")
+    ax.bar_label(bars, fmt=style, padding=3)
+    ax.set(xlabel=xlabel)
+    ax.margins(x=0.15)
+    return ax
+
+
 def mask_reasons(fields: Fields, time: int = -1, ax: Axes | None = None) -> Axes:
     """How many voxels carry each reason of the mask."""
     ax = ax or plt.subplots()[1]
@@ -180,22 +189,13 @@ def mask_reasons(fields: Fields, time: int = -1, ax: Axes | None = None) -> Axes
         ax.text(0.5, 0.5, "every field has a value wherever there is material", ha="center", va="center")
         ax.set_axis_off()
         return ax
-    names, numbers = zip(*reversed(counts))
-    bars = ax.barh(names, numbers, color="0.5")
-    ax.bar_label(bars, padding=3)
-    ax.set(xlabel="voxels")
-    ax.margins(x=0.15)
-    return ax
+    return _bars(ax, dict(counts), "%d", "voxels")
 
 
 def seconds_by_step(seconds: Mapping[str, float], ax: Axes | None = None) -> Axes:
     """How long the steps of a run took [s], as `run.json` has them; steps overlap."""
     ax = ax or plt.subplots()[1]
-    bars = ax.barh(list(reversed(seconds)), list(reversed(seconds.values())), color="0.5")
-    ax.bar_label(bars, fmt="%.3g", padding=3)
-    ax.set(xlabel="time [s]")
-    ax.margins(x=0.15)
-    return ax
+    return _bars(ax, seconds, "%.3g", "time [s]")
 
 
 def tracer_paths(tracers: Tracers, ax: Axes | None = None, across: str = "x", up: str = "z", colour: str = "strain") -> Axes:

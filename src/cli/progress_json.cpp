@@ -3,7 +3,7 @@
 #include <iostream>
 #include <sstream>
 
-#include "write/atomic_file.hpp"
+#include "write/text_file.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -39,10 +39,7 @@ void SparseView::show(const Progress& progress) {
 }
 
 void ProgressFile::write(const Json& progress) {
-  AtomicFile file(path_);
-  file.write(0, line(progress));
-  file.finish();
-  file.publish();
+  write_text_file(path_, line(progress));
 }
 
 void ProgressLog::write(const Json& progress) {

@@ -6,7 +6,7 @@
 
 #include "cli/peak_memory.hpp"
 #include "grainvdb/version.hpp"
-#include "write/atomic_file.hpp"
+#include "write/text_file.hpp"
 
 namespace grainvdb::cli {
 
@@ -17,10 +17,7 @@ void write_run_record(const RunReport& report, const std::string& folder) {
                                       {"active_voxels", report.active_voxels}, {"bytes_read", report.read.bytes_read},
                                       {"wall_seconds", report.wall_seconds},   {"seconds_by_step", steps},
                                       {"peak_memory_bytes", peak_memory()}};
-  AtomicFile file((std::filesystem::path(folder) / "run.json").string());
-  file.write(0, record.dump(2) + '\n');
-  file.finish();
-  file.publish();
+  write_text_file((std::filesystem::path(folder) / "run.json").string(), record.dump(2) + '\n');
 }
 
 }  // namespace grainvdb::cli

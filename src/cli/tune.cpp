@@ -18,7 +18,7 @@
 #include "cli/python.hpp"
 #include "pipeline/number.hpp"
 #include "pipeline/text.hpp"
-#include "write/atomic_file.hpp"
+#include "write/text_file.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -117,13 +117,6 @@ std::vector<Knob> chosen_knobs(const TuneOptions& options, std::vector<Knob> kno
   return knobs;
 }
 
-void write_text(const std::string& path, const std::string& text) {
-  AtomicFile file(path);
-  file.write(0, text);
-  file.finish();
-  file.publish();
-}
-
 void tune_pipeline(const TuneOptions& options) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, options.threads);
   TuneRequest request;
@@ -157,7 +150,7 @@ void tune_pipeline(const TuneOptions& options) {
     report = tune(request, *source);
   }
   const std::string table = (std::filesystem::path(options.output) / "tune.csv").string();
-  write_text(table, to_csv(report, request.tolerance));
+  write_text_file(table, to_csv(report, request.tolerance));
   if (!options.quiet)
     std::cout << describe(report, request.tolerance) << "Best of " << options.repeats
               << (options.repeats == 1 ? " run on " : " runs on ") << options.threads
