@@ -91,7 +91,8 @@ void add_contacts_of_grains(const Frame& frame, std::span<const std::uint8_t> ro
 void add_contacts_with_walls(const Frame& frame, std::span<const std::uint8_t> role, std::span<const int> species,
                              BranchSets& sets) {
   HalfBranches halves = wall_half_branches(frame);
-  const std::vector<std::size_t> particle = wall_branch_particles(frame);
+  std::vector<std::size_t> particle;
+  if (!role.empty() || !species.empty()) particle = wall_branch_particles(frame);
   halves.species = by_branch(species, particle);
   if (const auto all = sets.find(BranchKind::all); all != sets.end())
     for (std::size_t n = 0; n < halves.size(); ++n) append(halves, n, all->second);
