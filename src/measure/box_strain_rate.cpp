@@ -61,7 +61,7 @@ class BoxStrainRate : public Measurement {
  public:
   explicit BoxStrainRate(const MeasurementSetting& setting)
       : size_(size_of(setting.options)),
-        fewest_(static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("particles_min")))),
+        fewest_(count_option(setting.options, "particles_min")),
         condition_max_(number_option(setting.options, "condition_max")),
         lattice_(setting.lattice),
         box_(setting.box) {}

@@ -18,7 +18,7 @@ class Coaxiality : public Measurement {
  public:
   explicit Coaxiality(const MeasurementSetting& setting)
       : least_phi_(number_option(setting.options, "phi_min")),
-        angles_(0, right_angle, static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("bins"))),
+        angles_(0, right_angle, count_option(setting.options, "bins"),
                 independence(setting.lattice.voxel(), setting.kernel)) {}
 
   void take(const OutputFields& fields) override {

@@ -35,8 +35,7 @@ class IncipientYield : public Measurement {
 
  private:
   static Distribution distribution(const MeasurementSetting& setting, double lo, double hi) {
-    return {lo, hi, static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("bins"))),
-            independence(setting.lattice.voxel(), setting.kernel)};
+    return {lo, hi, count_option(setting.options, "bins"), independence(setting.lattice.voxel(), setting.kernel)};
   }
 
   void add(double mu, std::span<const double, 3> principal, double weight) {

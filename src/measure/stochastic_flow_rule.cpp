@@ -39,7 +39,7 @@ class StochasticFlowRule : public Measurement {
       : lattice_(setting.lattice),
         box_(setting.box),
         least_phi_(number_option(setting.options, "phi_min")),
-        angles_(0, std::numbers::pi, static_cast<std::size_t>(std::get<std::int64_t>(setting.options.at("bins"))),
+        angles_(0, std::numbers::pi, count_option(setting.options, "bins"),
                 independence(setting.lattice.voxel(), setting.kernel)),
         starts_(starts_of(setting.options)),
         length_(number_option(setting.options, "length") > 0 ? number_option(setting.options, "length")

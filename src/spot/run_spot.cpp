@@ -6,17 +6,10 @@
 #include "grainvdb/error.hpp"
 #include "pipeline/number.hpp"
 #include "spot/snapshot.hpp"
-#include "write/atomic_file.hpp"
+#include "write/text_file.hpp"
 
 namespace grainvdb::spot {
 namespace {
-
-void write_file(const std::string& path, const std::string& text) {
-  AtomicFile file(path);
-  file.write(0, text);
-  file.finish();
-  file.publish();
-}
 
 std::string dump_name(std::size_t k) {
   std::string digits = std::to_string(k);
@@ -49,7 +42,7 @@ SpotReport run_spot(const SpotRun& run, const std::string& folder,
     model.advance(static_cast<double>(k) * run.interval);
     model.compact();
     Snapshot now = take_snapshot(model);
-    write_file((std::filesystem::path(folder) / dump_name(k)).string(),
+    write_text_file((std::filesystem::path(folder) / dump_name(k)).string(),
                dump_text(model, now, velocities(before, now, model.particles().unit()), static_cast<std::int64_t>(k),
                          run.units));
     before = std::move(now);
@@ -59,8 +52,8 @@ SpotReport run_spot(const SpotRun& run, const std::string& folder,
   }
   std::string drained;
   for (const Drained& d : model.drained()) drained += std::to_string(d.id) + ' ' + print_number(d.time) + '\n';
-  write_file((std::filesystem::path(folder) / "drained.txt").string(), drained);
-  write_file((std::filesystem::path(folder) / "spot.yaml").string(), run.resolved);
+  write_text_file((std::filesystem::path(folder) / "drained.txt").string(), drained);
+  write_text_file((std::filesystem::path(folder) / "spot.yaml").string(), run.resolved);
   report.particles_at_end = model.particles().size();
   report.drained = model.drained().size();
   report.time = model.time();
