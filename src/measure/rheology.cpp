@@ -162,7 +162,11 @@ class RheologyMeasurement : public Measurement {
     table.numbers.push_back({.name = name + "_reduced_chi_square",
                              .value = fit.reduced_chi_square(),
                              .description = "chi^2 per degree of freedom of the fit of " + law});
-    if (!fit.fitted()) table.remarks.push_back("A fit of " + law + " is refused: " + fit.refusal + '.');
+    if (!fit.fitted()) {
+      table.remarks.push_back("A fit of " + law + " is refused: " + fit.refusal + '.');
+    } else if (!fit.doubt.empty()) {
+      table.remarks.push_back("The fit of " + law + " is doubtful: " + fit.doubt + '.');
+    }
   }
 
   /// The soft law where p* is known and the data show what it does, else the rigid one.
