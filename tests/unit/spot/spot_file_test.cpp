@@ -151,7 +151,7 @@ TEST(SpotFile, VoidsTakeTheSectionOfSpots) {
   const testing::TemporaryFolder folder;
   const SpotRun run = load_spot_run(write(folder, void_text));
   ASSERT_TRUE(run.voids.has_value());
-  EXPECT_EQ(run.packing.id.size(), 8 * 4 * 11U);  // layers at .5, 1.21, … 7.57
+  EXPECT_EQ(run.packing.id.size(), 8 * 4 * 10U);  // layers at .5, 1.21, … 6.86
   EXPECT_EQ(run.units, "lj");
   EXPECT_THAT(run.resolved, ::testing::Not(HasSubstr("relaxation")));
   testing::write_plain(folder.path() + "/again.yaml", run.resolved);
