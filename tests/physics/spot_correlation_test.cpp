@@ -14,10 +14,6 @@ namespace {
 constexpr double bin_width = 0.5;
 constexpr std::size_t bins = 13;
 
-double common_share(double r, double radius) {
-  return r < 2 * radius ? 1 - 3 * r / (4 * radius) + std::pow(r / radius, 3) / 16 : 0;
-}
-
 struct Pair {
   std::size_t i, j, bin;
 };

@@ -16,10 +16,6 @@
 namespace grainvdb::testing::spot_diffusion_test {
 namespace {
 
-double common_share(double r, double radius) {
-  return r < 2 * radius ? 1 - 3 * r / (4 * radius) + std::pow(r / radius, 3) / 16 : 0;
-}
-
 /// Probabilities of the sum of n signs: of -n, -n+2, …, n.
 std::vector<double> sums_of_signs(std::size_t n) {
   std::vector<double> p{1};

@@ -1,5 +1,6 @@
 #pragma once
 /// Runs of the spot model whose particles hardly move, so that what spots do to them can be compared with closed forms.
+#include <cmath>
 #include <vector>
 
 #include "spot/snapshot.hpp"
@@ -17,6 +18,11 @@ inline spot::SpotParameters gentle_spots() {
   p.relaxation.every = 0;
   p.relaxation.radius = 3.6;
   return p;
+}
+
+/// C(r): the volume that two balls of this radius at a distance r have in common, over that of one.
+inline double common_share(double r, double radius) {
+  return r < 2 * radius ? 1 - 3 * r / (4 * radius) + std::pow(r / radius, 3) / 16 : 0;
 }
 
 /// Displacements of all particles, in the order of their ids, since the call before.
