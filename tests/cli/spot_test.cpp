@@ -69,8 +69,8 @@ TEST(Spot, FilesOfTheOtherKindAreToldApart) {
   for (const char* command : {"run", "validate"}) {
     const CommandResult result = run_command({command, shipped_file()}, folder.path());
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, AllOf(HasSubstr("spot_silo.yaml:"), HasSubstr("this is a spot file"),
-                                  HasSubstr("grainvdb spot run")));
+    EXPECT_THAT(result.err,
+                AllOf(HasSubstr("spot_silo.yaml:"), HasSubstr("this is a spot file"), HasSubstr("grainvdb spot run")));
   }
   const CommandResult result =
       run_command({"spot", "run", ::grainvdb::testing::in_repository("pipelines/silo.yaml")}, folder.path());
@@ -80,22 +80,12 @@ TEST(Spot, FilesOfTheOtherKindAreToldApart) {
 
 TEST(Spot, VoidsMakeDumpsThatMakeFields) {
   const Folder folder;
-  folder.write("voids.yaml", R"(grainvdb: 1
-packing:
-  lattice: {step: [0.5, 0.5, 0.70711]}
-container:
-  lo: [-6, 0, 0]
-  hi: [6, 4, 12]
-  periodic: [y]
-  orifice: {width: 3}
-voids: {hop_rate: 20, insertion_rate: 30}
-output: {interval: 1, end: 3}
-)");
-  const CommandResult voids = run_command({"spot", "run", "voids.yaml"}, folder.path());
+  const CommandResult voids = run_command(
+      {"spot", "run", ::grainvdb::testing::in_repository("pipelines/void_silo.yaml"), "-o", "voids"}, folder.path());
   ASSERT_EQ(voids.exit_code, 0) << voids.err;
-  EXPECT_THAT(voids.out, AllOf(HasSubstr("4 snapshots until time 3 in spot"), HasSubstr("voids: ")));
+  EXPECT_THAT(voids.out, AllOf(HasSubstr("5 snapshots until time 2 in voids"), HasSubstr("\nvoids: ")));
   folder.write("p.yaml", R"(grainvdb: 1
-input: {particles: spot/*.dump}
+input: {particles: voids/*.dump}
 lattice: {voxel: 0.5}
 kernel: {cutoff: 3}
 output: {fields: [phi, velocity]}
