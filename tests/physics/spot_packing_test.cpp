@@ -56,20 +56,20 @@ TEST(SpotPacking, WithoutRelaxationOverlapsBecomeThoseOfRandomPlaces) {
   const Box box{{0, 0, 0}, {12, 12, 12}, {true, true, true}};
   const double phi = 0.58;
   spot::SpotParameters p = gentle_spots();
-  p.influence = 50;
+  p.influence = 40;
   p.count = 100;
   spot::SpotModel model({box, std::nullopt}, spot::random_packing(box, phi, 1, 41), p, 42);
   EXPECT_LT(structure_of(box, places(model, box)).badness, 1e-5);
   std::vector<double> badness, one;
   for (int sample = 0; sample < 8; ++sample) {
-    model.run_events(sample == 0 ? 1'200'000 : 300'000);
+    model.run_events(sample == 0 ? 800'000 : 200'000);
     badness.push_back(structure_of(box, places(model, box)).badness);
     one.push_back(1);
   }
   const Measured mean = ratio_of_sums(badness, one);
   EXPECT_LT(mean.error, 0.02 * 0.8 * phi);  // 4440 overlapping pairs: 2.5 % for one sample
   EXPECT_GT(mean.value, 0.8 * phi - 4 * mean.error);
-  EXPECT_LT(mean.value, 1.06 * 0.8 * phi + 4 * mean.error);
+  EXPECT_LT(mean.value, 1.07 * 0.8 * phi + 4 * mean.error);
 }
 
 // The published parameters and the published limits: B ≤ 0.002, no pair nearer than 0.99 d.
