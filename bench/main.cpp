@@ -14,6 +14,7 @@
 #include "machine.hpp"
 #include "run_bench.hpp"
 #include "splat_bench.hpp"
+#include "spot_bench.hpp"
 #include "threads.hpp"
 #include "tracer_bench.hpp"
 
@@ -25,6 +26,7 @@ int check_results() {
   check_contacts(tiny_sizes());
   check_run(tiny_sizes());
   check_tracers(tiny_sizes());
+  check_spots(tiny_sizes());
   return all_checks_succeeded() ? 0 : 1;
 }
 
@@ -60,6 +62,7 @@ int main(int argc, char** argv) {
     register_memory(sizes);
     register_run(sizes);
     register_tracers(sizes);
+    register_spots(sizes);
     describe_build();
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;

@@ -5,6 +5,7 @@
 
 #include "cli/commands.hpp"
 #include "grainvdb/pipeline.hpp"
+#include "spot/spot_schema.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -14,6 +15,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* schema_footer = R"(Examples:
   grainvdb schema > grainvdb.schema.json
   grainvdb schema --text
+  grainvdb schema --spot --text
 
 Editors check pipeline files against the schema when it is named in their first line:
   # yaml-language-server: $schema=grainvdb.schema.json)";
@@ -71,14 +73,16 @@ void print_section(const Json& section, const std::string& indent) {
 
 void add_schema(CLI::App& app) {
   CLI::App* command = app.add_subcommand("schema", "Print the schema of pipeline files, as JSON Schema (draft 7)");
-  const auto text = std::make_shared<bool>(false);
+  const auto text = std::make_shared<bool>(false), spot = std::make_shared<bool>(false);
   command->add_flag("--text", *text, "Print every key with its type, default and help instead");
+  command->add_flag("--spot", *spot, "The schema of spot files, which 'grainvdb spot run' takes");
   command->footer(schema_footer);
-  command->callback([text] {
+  command->callback([text, spot] {
+    const std::string schema = *spot ? spot::spot_file_schema() : pipeline_schema();
     if (*text)
-      print_section(Json::parse(pipeline_schema()), "");
+      print_section(Json::parse(schema), "");
     else
-      std::cout << pipeline_schema();
+      std::cout << schema;
   });
 }
 

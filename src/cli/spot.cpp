@@ -30,8 +30,12 @@ void print(const spot::SpotRun& run, const spot::SpotReport& report, const std::
   std::cout << "particles: " << report.particles_at_start << " at the start, " << report.drained << " drained, "
             << report.particles_at_end << " left";
   if (run.left_out > 0) std::cout << " (" << run.left_out << " of the dump lie outside the container)";
-  std::cout << "\nspots: " << c.inserted + run.parameters.count << " entered, " << c.removed << " left, " << c.steps
-            << " steps, " << c.relaxed << " of them relaxed\n";
+  std::cout << (run.voids ? "\nvoids: " : "\nspots: ") << c.inserted + run.parameters.count << " entered, " << c.removed
+            << " left, " << c.steps;
+  if (run.voids)
+    std::cout << " hops\n";
+  else
+    std::cout << " steps, " << c.relaxed << " of them relaxed\n";
 }
 
 void run(const SpotRunOptions& options) {

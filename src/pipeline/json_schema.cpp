@@ -134,10 +134,15 @@ Json section_schema(const Schema& schema, const std::string& path, const std::st
 
 }  // namespace
 
-std::string pipeline_schema(const StageRegistry& registry) {
-  Json json{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "grainvdb pipeline file"}};
-  json.update(section_schema(make_schema(registry), "", "What to read, on which lattice, and which fields to write."));
+std::string json_schema(const Schema& schema, const std::string& title, const std::string& help) {
+  Json json{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}};
+  json.update(section_schema(schema, "", help));
   return json.dump(2) + '\n';
+}
+
+std::string pipeline_schema(const StageRegistry& registry) {
+  return json_schema(make_schema(registry), "grainvdb pipeline file",
+                     "What to read, on which lattice, and which fields to write.");
 }
 
 }  // namespace grainvdb

@@ -66,6 +66,17 @@ class Validation {
     convert(key, it->value);
   }
 
+  void check_kind(const ConfigNode& root) const {
+    for (const ConfigEntry& entry : root.entries)
+      for (const ForeignSection& foreign : schema_.foreign)
+        if (entry.key == foreign.name)
+          throw ConfigError({entry.where,
+                             "this is " + foreign.kind,
+                             "the section " + quote_text(entry.key),
+                             {},
+                             "Give it to '" + foreign.command + "'"});
+  }
+
   void section(const std::string& path, const Location& where, const ConfigNode& node) {
     if (node.kind != ConfigNode::Kind::mapping)
       throw ConfigError({node.where,
@@ -151,7 +162,9 @@ ConfigNode read_with_overrides(const std::string& file, const std::vector<std::s
   ConfigNode root = read_config(file);
   if (root.kind == ConfigNode::Kind::mapping)
     for (const std::string& text : overrides) apply_override(root, text, schema);
-  Validation(schema).check_version(root, file);
+  const Validation validation(schema);
+  validation.check_version(root, file);
+  validation.check_kind(root);
   return root;
 }
 

@@ -271,6 +271,8 @@ Schema make_schema(const StageRegistry& registry) {
   version.hint = "Other versions need another release of grainvdb.";
   version.apply = [](Pipeline&, const ConfigValue&) {};
   schema.keys.push_back(version);
+  for (const char* section : {"spots", "voids", "packing", "container"})
+    schema.foreign.push_back({section, "a spot file", "grainvdb spot run"});
   add_input(schema);
   add_unsaid_keys(schema);
   add_contact_keys(schema);

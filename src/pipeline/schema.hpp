@@ -89,9 +89,17 @@ struct SectionInfo {
   std::string name() const;
 };
 
+/// A section by which files of another kind give themselves away.
+struct ForeignSection {
+  std::string name;
+  std::string kind;     ///< of file, e.g. "a spot file"
+  std::string command;  ///< that takes such files
+};
+
 struct Schema {
   std::vector<SectionInfo> sections;  ///< a section comes after the one around it
   std::vector<KeyInfo> keys;
+  std::vector<ForeignSection> foreign{};  ///< at the top
 
   /// nullptr when there is none.
   const KeyInfo* find_key(const std::string& section, const std::string& name) const;
@@ -101,6 +109,9 @@ struct Schema {
 };
 
 Schema make_schema(const StageRegistry& registry);
+
+/// The declaration as JSON Schema (draft 7), with a title and what the whole file is for.
+std::string json_schema(const Schema& schema, const std::string& title, const std::string& help);
 
 /// What a key accepts in words, e.g. "a number > 0 [length]".
 std::string accepted(const KeyInfo& key);

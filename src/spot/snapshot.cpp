@@ -53,40 +53,49 @@ std::vector<Vec3> velocities(const Snapshot& before, const Snapshot& now, const 
   return result;
 }
 
-std::string dump_text(const SpotModel& model, const Snapshot& now, const std::vector<Vec3>& velocity, std::int64_t step,
-                      const std::string& units) {
+DumpFrame make_frame(const SpotModel& model, const Snapshot& now, const std::vector<Vec3>& velocity) {
   const ParticleStore& store = model.particles();
+  DumpFrame frame{now.time, store.box(), store.diameter(), now.id, {}, velocity};
+  frame.position.reserve(now.site.size());
+  for (const Site& site : now.site) frame.position.push_back(store.position_of(site));
+  return frame;
+}
+
+std::string dump_text(const DumpFrame& frame, std::int64_t step, const std::string& units) {
   std::string text = "ITEM: UNITS\n" + units + "\nITEM: TIME\n";
-  append(text, now.time, 17);
+  append(text, frame.time, 17);
   text += "\nITEM: TIMESTEP\n";
   append(text, step);
   text += "\nITEM: NUMBER OF ATOMS\n";
-  append(text, static_cast<std::int64_t>(now.id.size()));
+  append(text, static_cast<std::int64_t>(frame.id.size()));
   text += "\nITEM: BOX BOUNDS";
-  const Box& box = store.box();
-  for (const bool periodic : box.periodic) text += periodic ? " pp" : " ff";
+  for (const bool periodic : frame.box.periodic) text += periodic ? " pp" : " ff";
   for (std::size_t a = 0; a < 3; ++a) {
     text += '\n';
-    append(text, box.lo[a], 17);
+    append(text, frame.box.lo[a], 17);
     text += ' ';
-    append(text, box.hi[a], 17);
+    append(text, frame.box.hi[a], 17);
   }
   text += std::string("\nITEM: ATOMS id type x y z vx vy vz radius ") + spot_column + '\n';
-  text.reserve(text.size() + 110 * now.id.size());
-  for (std::size_t i = 0; i < now.id.size(); ++i) {
-    append(text, now.id[i]);
+  text.reserve(text.size() + 110 * frame.id.size());
+  for (std::size_t i = 0; i < frame.id.size(); ++i) {
+    append(text, frame.id[i]);
     text += " 1";
-    const Vec3 x = store.position_of(now.site[i]);
-    for (const Vec3* v : {&x, static_cast<const Vec3*>(&velocity[i])})
+    for (const Vec3* v : {&frame.position[i], &frame.velocity[i]})
       for (const double component : *v) {
         text += ' ';
         append(text, component, 9);
       }
     text += ' ';
-    append(text, 0.5 * store.diameter(), 9);
+    append(text, 0.5 * frame.diameter, 9);
     text += " 1\n";
   }
   return text;
+}
+
+std::string dump_text(const SpotModel& model, const Snapshot& now, const std::vector<Vec3>& velocity, std::int64_t step,
+                      const std::string& units) {
+  return dump_text(make_frame(model, now, velocity), step, units);
 }
 
 }  // namespace grainvdb::spot

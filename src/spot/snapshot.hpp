@@ -23,7 +23,18 @@ std::vector<Vec3> velocities(const Snapshot& before, const Snapshot& now, const 
 /// The column that marks a dump as one of a spot run: there are no forces, and stress means nothing.
 inline constexpr const char* spot_column = "v_spot";
 
+/// What a dump tells of equal grains at a moment.
+struct DumpFrame {
+  double time = 0;
+  Box box;
+  double diameter = 0;
+  std::vector<std::int64_t> id;
+  std::vector<Vec3> position, velocity;
+};
+DumpFrame make_frame(const SpotModel& model, const Snapshot& now, const std::vector<Vec3>& velocity);
+
 /// Text of one frame: `id type x y z vx vy vz radius v_spot`, type 1, numbered by `step`.
+std::string dump_text(const DumpFrame& frame, std::int64_t step, const std::string& units);
 std::string dump_text(const SpotModel& model, const Snapshot& now, const std::vector<Vec3>& velocity, std::int64_t step,
                       const std::string& units);
 

@@ -47,6 +47,18 @@ class Values {
   const CheckedConfig& config_;
 };
 
+/// make(), whose errors stand at that place.
+template <class F>
+auto placed(const Location& where, F make) {
+  try {
+    return make();
+  } catch (const ConfigError& error) {
+    Problem problem = error.problem();
+    problem.where = where;
+    throw ConfigError(problem);
+  }
+}
+
 Container read_container(const Values& v) {
   Container container;
   container.box.lo = v.vector("container.lo");
@@ -101,6 +113,42 @@ SpotParameters read_spots(const Values& v, double diameter) {
   return p;
 }
 
+// One model, and a packing that it can have.
+void check_model(const Values& v, const std::string& file) {
+  const bool spots = v.has_section("spots"), voids = v.has_section("voids");
+  if (spots == voids)
+    throw ConfigError({spots ? v.where("voids") : Location{file},
+                       spots ? "a run has either spots or voids" : "there are neither spots nor voids",
+                       {},
+                       "either the section 'spots' or the section 'voids'",
+                       {}});
+  if (!voids) return;
+  if (!v.has_section("packing.lattice"))
+    throw ConfigError({v.where("packing"), "voids need a lattice to hop on", {}, "packing.lattice", {}});
+  if (v.has_section("relaxation"))
+    throw ConfigError({v.where("relaxation"), "nothing is relaxed in the void model", {}, "no such section", {}});
+  if (!v.has_section("container.orifice"))
+    throw ConfigError({v.where("container"), "voids have no orifice to enter at", {}, "container.orifice", {}});
+}
+
+StaggeredLattice read_lattice(const Values& v, const Box& box) {
+  return placed(v.where("packing.lattice"), [&] {
+    return StaggeredLattice(box, v.get<double>("packing.lattice.diameter"), v.vector("packing.lattice.step"),
+                            v.find<double>("packing.lattice.height").value_or(box.length(2)));
+  });
+}
+
+VoidRun read_voids(const Values& v, const SpotRun& run) {
+  VoidParameters p;
+  p.hop_rate = v.get<double>("voids.hop_rate");
+  p.insertion_rate = v.get<double>("voids.insertion_rate");
+  p.entry =
+      v.get<std::string>("voids.entry") == "centre" ? VoidParameters::Entry::centre : VoidParameters::Entry::spread;
+  VoidRun voids{read_lattice(v, run.container.box), p};
+  placed(v.where("container.orifice"), [&] { return LatticeVoids(run.container, voids.lattice, p, run.seed); });
+  return voids;
+}
+
 // What no single key can tell.
 void check_together(const Values& v, const SpotRun& run) {
   const SpotParameters& p = run.parameters;
@@ -129,8 +177,6 @@ void check_together(const Values& v, const SpotRun& run) {
   if (moved > 0.5 * run.packing.diameter)
     throw ConfigError({v.where("spots.step"), "a spot moves grains too far at once", print_number(moved),
                        "at most half a diameter", "Take shorter steps or a larger influence"});
-  if (run.end / run.interval > 1e7)
-    throw ConfigError({v.where("output.interval"), "there would be too many snapshots", {}, "at most 1e7", {}});
 }
 
 std::vector<std::string> dump_paths(const std::string& file, std::vector<std::string> paths) {
@@ -195,11 +241,16 @@ Packing read_dump(const Values& v, const std::string& file, SpotRun& run) {
 }
 
 Packing make_packing(const Values& v, const std::string& file, SpotRun& run) {
-  const bool random = v.has_section("packing.random"), dump = v.has_section("packing.dump");
-  if (random == dump)
-    throw ConfigError(
-        {v.where("packing"), "the packing must be given in one way", {}, "either packing.dump or packing.random", {}});
+  const bool random = v.has_section("packing.random"), dump = v.has_section("packing.dump"),
+             lattice = v.has_section("packing.lattice");
+  if (random + dump + lattice != 1)
+    throw ConfigError({v.where("packing"),
+                       "the packing must be given in one way",
+                       {},
+                       "either packing.dump or packing.random or packing.lattice",
+                       {}});
   if (dump) return read_dump(v, file, run);
+  if (lattice) return lattice_packing(read_lattice(v, run.container.box), v.get<double>("packing.lattice.diameter"));
   Box box = run.container.box;
   if (const auto height = v.find<double>("packing.random.height")) box.hi[2] = std::min(box.hi[2], box.lo[2] + *height);
   const double phi = v.get<double>("packing.random.phi"), diameter = v.get<double>("packing.random.diameter");
@@ -220,18 +271,26 @@ SpotRun load_spot_run(const std::string& file, const std::vector<std::string>& o
   CheckedConfig config = load_config(file, overrides, schema);
   const Values v(file, config);
   SpotRun run;
+  check_model(v, file);
   run.container = read_container(v);
   run.seed = static_cast<std::uint64_t>(v.get<std::int64_t>("seed"));
   run.interval = v.get<double>("output.interval");
   run.end = v.get<double>("output.end");
+  if (run.end / run.interval > 1e7)
+    throw ConfigError({v.where("output.interval"), "there would be too many snapshots", {}, "at most 1e7", {}});
   run.units = v.find<std::string>("output.units").value_or("");
   run.packing = make_packing(v, file, run);
   if (run.units.empty()) run.units = "lj";
-  run.parameters = read_spots(v, run.packing.diameter);
-  check_together(v, run);
+  if (v.has_section("voids")) {
+    run.voids = read_voids(v, run);
+  } else {
+    run.parameters = read_spots(v, run.packing.diameter);
+    check_together(v, run);
+    config.values.insert_or_assign("relaxation.radius", run.parameters.relaxation.radius);
+  }
   config.values.insert_or_assign("output.units", run.units);
-  config.values.insert_or_assign("relaxation.radius", run.parameters.relaxation.radius);
   // Defaults of sections that are not there would make them be there.
+  if (run.voids) std::erase_if(config.values, [](const auto& value) { return value.first.starts_with("relaxation."); });
   for (const char* section : {"packing.random", "container.orifice", "spots.bias"})
     if (!v.has_section(section))
       std::erase_if(config.values,

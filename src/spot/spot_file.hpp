@@ -1,19 +1,29 @@
 #pragma once
-/// A spot file: packing, container, spots, relaxation and output of a run of the spot model, read and checked.
+/// A spot file: packing, container, spots or voids, relaxation and output of a run, read and checked.
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "spot/container.hpp"
 #include "spot/particle_store.hpp"
 #include "spot/spot_model.hpp"
+#include "spot/staggered_lattice.hpp"
+#include "spot/void_model.hpp"
 
 namespace grainvdb::spot {
+
+/// What a run of the void model has instead of spots.
+struct VoidRun {
+  StaggeredLattice lattice;
+  VoidParameters parameters;
+};
 
 struct SpotRun {
   Container container;
   Packing packing;
-  SpotParameters parameters;
+  SpotParameters parameters;       ///< not used with voids
+  std::optional<VoidRun> voids{};  ///< instead of spots
   std::uint64_t seed = 1;
   double interval = 0;  ///< between snapshots [time]
   double end = 0;       ///< of the run [time]

@@ -47,7 +47,7 @@ KeyInfo zero_allowed(KeyInfo info) {
 }
 
 void add_packing(Schema& s) {
-  s.sections.push_back({"packing", "The grains at the start: of a dump, or random.", true});
+  s.sections.push_back({"packing", "The grains at the start: of a dump, random, or on a lattice.", true});
   s.keys.push_back(key("packing", "dump", ValueType::texts,
                        "Particle dumps, relative to the folder of the file; one frame of them is taken."));
   s.keys.push_back(
@@ -60,6 +60,15 @@ void add_packing(Schema& s) {
   s.keys.push_back(with_default(positive("packing.random", "diameter", "length", "Of the grains."), 1.0));
   s.keys.push_back(
       positive("packing.random", "height", "length", "How high it fills the container; all of it when not given."));
+  s.sections.push_back({"packing.lattice", "Staggered layers, on which voids can rise.", false, true});
+  s.keys.push_back(with_default(positive("packing.lattice", "diameter", "length", "Of the grains."), 1.0));
+  KeyInfo step = required(numbers("packing.lattice", "step", 3,
+                                  "From a grain to its upper neighbours along x, y, z; 0 along x or y: not staggered. "
+                                  "Half a diameter sideways and 0.70711 upwards is the densest."));
+  step.minimum = 0;
+  s.keys.push_back(step);
+  s.keys.push_back(
+      positive("packing.lattice", "height", "length", "How high it fills the container; all of it when not given."));
 }
 
 void add_container(Schema& s) {
@@ -77,8 +86,18 @@ void add_container(Schema& s) {
       with_default(numbers("container.orifice", "centre", 2, "x and y of the middle."), std::vector<double>{0, 0}));
 }
 
+void add_voids(Schema& s) {
+  s.sections.push_back(
+      {"voids", "Voids instead of spots, which hop from grain to grain of a lattice: what fails, for comparison.",
+       false, true});
+  s.keys.push_back(required(positive("voids", "hop_rate", "1/time", "Hops of a void per time.")));
+  s.keys.push_back(required(positive("voids", "insertion_rate", "1/time", "Voids entering at the orifice.")));
+  s.keys.push_back(choice("voids", "entry", {"centre", "spread"},
+                          "Voids enter nearest to the middle of the orifice, or all over it."));
+}
+
 void add_spots(Schema& s) {
-  s.sections.push_back({"spots", "The spots and their walk.", true});
+  s.sections.push_back({"spots", "The spots and their walk.", false, true});
   s.keys.push_back(required(positive("spots", "radius", "length", "r_s: grains within it move.")));
   s.keys.push_back(
       positive("spots", "influence", "1", "w: grains move by -1/w of the spot's step. Needed without a bias."));
@@ -131,6 +150,7 @@ Schema make_spot_schema() {
   add_packing(s);
   add_container(s);
   add_spots(s);
+  add_voids(s);
   s.sections.push_back({"output", "Snapshots.", true});
   s.keys.push_back(required(positive("output", "interval", "time", "Between snapshots.")));
   s.keys.push_back(required(positive("output", "end", "time", "Of the run.")));
@@ -140,7 +160,13 @@ Schema make_spot_schema() {
   s.keys.push_back(units);
   KeyInfo seed = with_default(whole(key("", "seed", ValueType::integer, "Of the random numbers."), 0), std::int64_t{1});
   s.keys.push_back(seed);
+  for (const char* section : {"input", "lattice", "kernel"})
+    s.foreign.push_back({section, "a pipeline file", "grainvdb run"});
   return s;
+}
+
+std::string spot_file_schema() {
+  return json_schema(make_spot_schema(), "grainvdb spot file", "Which grains to start from, and how spots move them.");
 }
 
 }  // namespace grainvdb::spot

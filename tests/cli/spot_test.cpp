@@ -64,5 +64,36 @@ output: {fields: [mu]}
   EXPECT_THAT(result.err, HasSubstr("contact"));
 }
 
+TEST(Spot, FilesOfTheOtherKindAreToldApart) {
+  const Folder folder;
+  for (const char* command : {"run", "validate"}) {
+    const CommandResult result = run_command({command, shipped_file()}, folder.path());
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err,
+                AllOf(HasSubstr("spot_silo.yaml:"), HasSubstr("this is a spot file"), HasSubstr("grainvdb spot run")));
+  }
+  const CommandResult result =
+      run_command({"spot", "run", ::grainvdb::testing::in_repository("pipelines/silo.yaml")}, folder.path());
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, AllOf(HasSubstr("this is a pipeline file"), HasSubstr("'grainvdb run'")));
+}
+
+TEST(Spot, VoidsMakeDumpsThatMakeFields) {
+  const Folder folder;
+  const CommandResult voids = run_command(
+      {"spot", "run", ::grainvdb::testing::in_repository("pipelines/void_silo.yaml"), "-o", "voids"}, folder.path());
+  ASSERT_EQ(voids.exit_code, 0) << voids.err;
+  EXPECT_THAT(voids.out, AllOf(HasSubstr("5 snapshots until time 2 in voids"), HasSubstr("\nvoids: ")));
+  folder.write("p.yaml", R"(grainvdb: 1
+input: {particles: voids/*.dump}
+lattice: {voxel: 0.5}
+kernel: {cutoff: 3}
+output: {fields: [phi, velocity]}
+)");
+  const CommandResult fields = run_command({"run", "p.yaml"}, folder.path());
+  EXPECT_EQ(fields.exit_code, 0) << fields.err;
+  EXPECT_THAT(fields.out, HasSubstr("wrote output/fields.hdf"));
+}
+
 }  // namespace
 }  // namespace grainvdb::test::spot_test

@@ -188,6 +188,17 @@ TEST(SchemaCommand, PrintsJsonAndText) {
               AllOf(HasSubstr("input:  (required)"), HasSubstr("  cutoff: number  (required)"), HasSubstr("[length]")));
 }
 
+TEST(SchemaCommand, PrintsThatOfSpotFiles) {
+  const CommandResult json = grainvdb({"schema", "--spot"});
+  EXPECT_EQ(json.exit_code, 0);
+  const auto schema = nlohmann::json::parse(json.out);
+  EXPECT_EQ(schema["title"], "grainvdb spot file");
+  EXPECT_TRUE(schema["properties"]["spots"]["properties"]["bias"]["properties"].contains("exponent"));
+  const CommandResult text = grainvdb({"schema", "--spot", "--text"});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_THAT(text.out, AllOf(HasSubstr("container:  (required)"), HasSubstr("voids:"), HasSubstr("[1/time]")));
+}
+
 TEST(Graph, ShowsWhatWouldRunWithoutTheDumps) {
   const Folder folder;
   folder.write("p.yaml", pipeline_text());  // no dumps

@@ -63,6 +63,7 @@ TEST(SpotFile, RefusesWhatCannotBeRun) {
   EXPECT_THAT(refusal({"relaxation.radius=2"}), HasSubstr("must hold the spot"));
   EXPECT_THAT(refusal({"packing.dump=nothing.dump"}), HasSubstr("either packing.dump or packing.random"));
   EXPECT_THAT(refusal({"spots.influence=0.1"}), HasSubstr("moves grains too far"));
+  EXPECT_THAT(refusal({"input.particles=x.dump"}), HasSubstr("this is a pipeline file"));
 }
 
 TEST(SpotFile, NamesThePlaceOfAFault) {
@@ -130,6 +131,77 @@ TEST(SpotRun, TakesAPackingFromADump) {
   EXPECT_GT(run.left_out, 0U);
   EXPECT_THROW(load_spot_run(write(folder, content), {"packing.frame=1"}), ConfigError);
   EXPECT_THROW(load_spot_run(write(folder, content), {"packing.types=[3]"}), InputError);
+}
+
+const std::string void_text = R"(grainvdb: 1
+packing:
+  lattice: {step: [0.5, 0.5, 0.70711]}
+container:
+  lo: [-4, 0, 0]
+  hi: [4, 4, 8]
+  periodic: [x, y]
+  orifice: {width: 2}
+voids:
+  hop_rate: 28
+  insertion_rate: 20
+output: {interval: 0.5, end: 1.5}
+)";
+
+TEST(SpotFile, VoidsTakeTheSectionOfSpots) {
+  const testing::TemporaryFolder folder;
+  const SpotRun run = load_spot_run(write(folder, void_text));
+  ASSERT_TRUE(run.voids.has_value());
+  EXPECT_EQ(run.packing.id.size(), 8 * 4 * 10U);  // layers at .5, 1.21, … 6.86
+  EXPECT_EQ(run.units, "lj");
+  EXPECT_THAT(run.resolved, ::testing::Not(HasSubstr("relaxation")));
+  testing::write_plain(folder.path() + "/again.yaml", run.resolved);
+  EXPECT_EQ(load_spot_run(folder.path() + "/again.yaml").resolved, run.resolved);
+  const SpotRun crystal =
+      load_spot_run(write(folder, text), {"packing={lattice: {step: [0.5, 0.5, 0.70711], height: 5}}"});
+  EXPECT_FALSE(crystal.voids.has_value());
+  EXPECT_EQ(crystal.packing.id.size(), 3 * (8 + 7) * 8U);
+}
+
+std::string void_refusal(const std::vector<std::string>& overrides) {
+  const testing::TemporaryFolder folder;
+  try {
+    load_spot_run(write(folder, void_text), overrides);
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return "nothing was refused";
+}
+
+TEST(SpotFile, RefusesVoidsThatCannotBeRun) {
+  EXPECT_THAT(void_refusal({}), HasSubstr("nothing was refused"));
+  EXPECT_THAT(void_refusal({"spots.radius=2", "spots.step=[1,1,1]", "spots.hop_rate=1"}),
+              HasSubstr("either spots or voids"));
+  EXPECT_THAT(void_refusal({"relaxation.every=0"}), HasSubstr("nothing is relaxed in the void model"));
+  EXPECT_THAT(void_refusal({"packing={random: {phi: 0.5}}"}), HasSubstr("voids need a lattice"));
+  EXPECT_THAT(void_refusal({"packing.lattice.step=[0.5, 0.5, 0.6]"}), HasSubstr("spot.yaml:3: grains of the lattice"));
+  EXPECT_THAT(void_refusal({"container.orifice.width=0.1", "container.orifice.centre=[0.5, 0]"}),
+              HasSubstr("voids have nowhere to enter"));
+  EXPECT_THAT(refusal({"packing.lattice.step=[1, 1, 1]"}), HasSubstr("the packing must be given in one way"));
+}
+
+TEST(SpotRun, VoidsWriteDumpsThatAreReadLikeAnyOther) {
+  const testing::TemporaryFolder folder;
+  const SpotRun run = load_spot_run(write(folder, void_text));
+  const std::string out = folder.path() + "/out";
+  const SpotReport report = run_spot(run, out);
+  InputSpec spec;
+  spec.particles = {out + "/spot_*.dump"};
+  const auto source = open_dumps(spec);
+  ASSERT_EQ(source->frames().size(), 4U);
+  EXPECT_DOUBLE_EQ(source->frames()[3].time.value(), 1.5);
+  EXPECT_GT(report.drained, 0U);
+  EXPECT_EQ(report.drained, report.counters.inserted);
+  EXPECT_EQ(report.particles_at_start, report.particles_at_end + report.drained);
+  const Frame last = source->read(3, Column::velocity);
+  EXPECT_EQ(last.particles.size(), report.particles_at_end);
+  double falling = 0;
+  for (const double v : last.particles.velocity[2]) falling -= v;
+  EXPECT_GT(falling, 0);
 }
 
 }  // namespace
