@@ -50,22 +50,29 @@ def _differing_keys(results: Results) -> list[str]:
     return parts
 
 
-def _numbers(page: Page, tables: Mapping[str, Mapping[str, Table]]) -> None:
+def number_rows(tables: Mapping[str, Mapping[str, Table]]) -> list[tuple[str, ...]]:
+    """A row for each number that all results have: table, quantity, what it is, unit, and the value of the first; then of each other its value, the
+    difference from the first and that difference in combined standard errors."""
     rows = []
     for name, by_label in tables.items():
         first, *others = (table.numbers for table in by_label.values())
         for key, reference in first.items():
             if not all(key in other for other in others):
                 continue
-            row = [name.replace("_", " "), reference.description, reference.unit, with_error(reference.value, reference.error)]
+            row = [name, key, reference.description, reference.unit, with_error(reference.value, reference.error)]
             for other in (o[key] for o in others):
                 apart = compare.deviation(reference, other)
                 row += [with_error(other.value, other.error), number(other.value - reference.value), "-" if np.isnan(apart) else f"{apart:+.1f}"]
             rows.append(tuple(row))
+    return rows
+
+
+def _numbers(page: Page, tables: Mapping[str, Mapping[str, Table]]) -> None:
+    rows = number_rows(tables)
     if not rows:
         return
     first, *others = next(iter(tables.values()))
-    head = ("table", "what", "unit", first, *(text for label in others for text in (label, "difference", "in errors")))
+    head = ("table", "quantity", "what it is", "unit", first, *(text for label in others for text in (label, "difference", "in errors")))
     page.add("Numbers", "<p>± is the standard error; the last column is the difference over √(σ₁² + σ₂²), where both have one. "
              "Errors are those that the measurements state, and most of these are lower bounds: see their pages.</p>", html_table(rows, head))
 
@@ -87,27 +94,54 @@ def _velocity(page: Page, results: Results, along: str, cut: str) -> None:
                                                f"The component of the velocity along {along} against {across} at heights {along}, averaged over {cut}."))
 
 
-def _beside(draw: list, columns: int, extent: tuple[float, float]) -> plt.Figure:
-    """Pictures of one plane, a row for each quantity."""
-    return panels(draw, columns, (4.2, float(np.clip(3.2 * extent[1] / extent[0], 1.6, 7)) + 0.7))
+def _grid(draw: list, columns: int, sides: list[tuple[float, float]]) -> plt.Figure:
+    """Pictures of one plane, a row for each quantity, in the shape of the plane."""
+    across, up = (high - low for low, high in sides)
+    return panels(draw, columns, (4.2, float(np.clip(3.2 * up / across, 1.6, 7)) + 0.7))
 
 
-def _slices(page: Page, results: Results, cut: str, at: float | None) -> None:
-    fields = [result.fields for result in results.values()]
-    index = [plots.middle(f, cut) if at is None else int(np.argmin(np.abs(f.axis(cut) - at))) for f in fields]
+def _spans(ends: list[tuple[np.ndarray, np.ndarray]], margin: float) -> list[tuple[float, float]]:
+    """From the least to the greatest place along both axes of a plane, in any of the results."""
+    return [(min(e[k].min() for e in ends) - margin, max(e[k].max() for e in ends) + margin) for k in (0, 1)]
+
+
+def slices(results: Results, cut: str, index: list[int]) -> plt.Figure:
+    """The layer of each result with that index across the axis `cut`: a row for each field that all have, on one colour
+    scale and over one span of places."""
     across, up = [axis for axis in AXES if axis != cut]
-    sides = {a: (min(f.axis(a)[0] for f in fields) - fields[0].voxel, max(f.axis(a)[-1] for f in fields) + fields[0].voxel) for a in (across, up)}
+    fields = [result.fields for result in results.values()]
+    sides = _spans([(f.axis(across), f.axis(up)) for f in fields], fields[0].voxel)
     draw = []
     for name in ordered(compare.common_fields(results), FIELDS_FIRST):
         scale = plots.colours(*(plots.layer(f, name, cut, k) for f, k in zip(fields, index)))
         for label, f, k in zip(results, fields, index):
             def one(ax, name=name, scale=scale, label=label, f=f, k=k):
                 plots.field_slice(f, name, cut, k, ax=ax, scale=scale)
-                ax.set(xlim=sides[across], ylim=sides[up], title=f"{label}: {ax.get_title()}")
+                ax.set(xlim=sides[0], ylim=sides[1], title=f"{label}: {ax.get_title()}")
             draw.append(one)
+    return _grid(draw, len(results), sides)
+
+
+def maps(tables: Mapping[str, Table], names: list[str]) -> plt.Figure:
+    """Columns of tables of places, a row for each, on one colour scale and over one span of places."""
+    first, second = next(iter(tables.values())).columns[:2]
+    sides = _spans([(t[first], t[second]) for t in tables.values()], 0)
+    draw = []
+    for name in names:
+        scale = plots.colours(*(table[name] for table in tables.values()))
+        for label, table in tables.items():
+            def one(ax, name=name, scale=scale, label=label, table=table):
+                plots.table_map(table, name, ax, scale)
+                ax.set(xlim=sides[0], ylim=sides[1], title=f"{label}: {ax.get_title()}")
+            draw.append(one)
+    return _grid(draw, len(tables), sides)
+
+
+def _slices(page: Page, results: Results, cut: str, at: float | None) -> None:
+    fields = [result.fields for result in results.values()]
+    index = [plots.middle(f, cut) if at is None else int(np.argmin(np.abs(f.axis(cut) - at))) for f in fields]
     where = ", ".join(f"{label} at {cut} = {number(f.axis(cut)[k])}" for label, f, k in zip(results, fields, index))
-    extent = [np.ptp(sides[a]) for a in (across, up)]
-    page.add("Slices", page.picture("slices", _beside(draw, len(results), extent), f"Slices ({where}), each field on one colour scale; blank: no value."))
+    page.add("Slices", page.picture("slices", slices(results, cut, index), f"Slices ({where}), each field on one colour scale; blank: no value."))
 
 
 def _spreading(page: Page, tables: Mapping[str, Table]) -> None:
@@ -134,25 +168,11 @@ def _measured(page: Page, name: str, tables: Mapping[str, Table]) -> None:
     drawn = compare.shared_columns(tables)
     if all(plots.is_map(table) for table in tables.values()):
         drawn = [c for c in drawn if c != first.columns[1]]
-        parts.append(page.picture(f"table_{name}", _maps(tables, drawn), f"Table {name}, each column on one colour scale."))
+        parts.append(page.picture(f"table_{name}", maps(tables, drawn), f"Table {name}, each column on one colour scale."))
     elif drawn and all(len(t[t.columns[0]]) > 1 and t.columns[0] == first.columns[0] for t in tables.values()):
         draw = [lambda ax, c=c: compare.columns(tables, c, ax) for c in drawn]
         parts.append(page.picture(f"table_{name}", _legend(panels(draw, 3, (3.9, 2.9))), f"Table {name}; bars are standard errors."))
     page.add(f"Measured: {name.replace('_', ' ')}", *parts)
-
-
-def _maps(tables: Mapping[str, Table], names: list[str]) -> plt.Figure:
-    across, up = next(iter(tables.values())).columns[:2]
-    sides = [(min(t[c].min() for t in tables.values()), max(t[c].max() for t in tables.values())) for c in (across, up)]
-    draw = []
-    for name in names:
-        scale = plots.colours(*(table[name] for table in tables.values()))
-        for label, table in tables.items():
-            def one(ax, name=name, scale=scale, label=label, table=table):
-                plots.table_map(table, name, ax, scale)
-                ax.set(xlim=sides[0], ylim=sides[1], title=f"{label}: {ax.get_title()}")
-            draw.append(one)
-    return _beside(draw, len(tables), [np.ptp(s) for s in sides])
 
 
 def labels_of(folders: list[str], labels: list[str] | None) -> list[str]:
