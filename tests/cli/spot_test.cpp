@@ -81,7 +81,7 @@ TEST_P(ForcesOfSpots, AreRefusedWithTheReason) {
   for (const char* command : {"run", "validate"}) {
     const CommandResult result = run_on_spots("output: {fields: [phi, " + GetParam() + "]}", command);
     EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, AllOf(HasSubstr("p.yaml:9: there are no forces in a spot run"),
+    EXPECT_THAT(result.err, AllOf(HasSubstr("p.yaml:10: there are no forces in a spot run"),
                                   HasSubstr("output.fields wants " + GetParam() + "."),
                                   HasSubstr("velocities in its dumps are displacements"),
                                   HasSubstr("column v_spot in "), HasSubstr("phi, velocity and shear_rate are there")));
