@@ -18,7 +18,8 @@ from .tables import Table
 
 
 def _legend(figure: plt.Figure) -> plt.Figure:
-    figure.axes[0].legend(fontsize="small")
+    """With what the lines of its first panel are called, above all panels."""
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="lower center", bbox_to_anchor=(0.5, 1), ncols=4, frameon=False)
     return figure
 
 

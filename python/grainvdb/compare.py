@@ -141,14 +141,17 @@ def columns(tables: Mapping[str, Table], name: str, ax: Axes | None = None, agai
 
 def heights(results: Results, name: str, along: str, across: str, count: int = 6) -> np.ndarray:
     """Places along an axis, far from each other, at which every result knows a field over more than half of the width
-    that it has anywhere."""
+    that it has anywhere; voxel centres of the first result."""
     spans = []
     for result in results.values():
         known = np.isfinite(lines(result.fields, name, along, across)).sum(axis=1)
         at = result.fields.axis(along)[known > 0.5 * known.max()]
         spans.append((at.min(), at.max()))
     low, high = max(s[0] for s in spans), min(s[1] for s in spans)
-    return np.linspace(low, high, count + 2)[1:-1] if low < high else np.array([])
+    if low >= high:
+        return np.array([])
+    centres = next(iter(results.values())).fields.axis(along)
+    return np.unique([centres[np.argmin(np.abs(centres - at))] for at in np.linspace(low, high, count + 2)[1:-1]])
 
 
 def lines(fields: Fields, name: str, along: str, across: str) -> np.ndarray:

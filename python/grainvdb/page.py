@@ -42,7 +42,7 @@ class Page:
 
     def picture(self, name: str, figure: plt.Figure, caption: str) -> str:
         buffer = io.BytesIO()
-        figure.savefig(buffer, format="png", dpi=130, metadata={"Software": None})
+        figure.savefig(buffer, format="png", dpi=130, bbox_inches="tight", metadata={"Software": None})
         plt.close(figure)
         self.pictures[name] = buffer.getvalue()
         data = base64.b64encode(buffer.getvalue()).decode()
