@@ -74,6 +74,9 @@ struct Stage {
   std::function<std::optional<OptionConflict>(const StageSettings&)> species_conflict{};
   /// For the field of a species: that of all grains.
   std::string species_of{};
+  /// Whether it is made of forces, or of momentum that grains carry. Snapshots of a spot run have neither: such fields
+  /// are refused for them, with all that need one.
+  bool of_forces = false;
 };
 
 /// The stages that can be asked for, by name.

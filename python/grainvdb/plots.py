@@ -53,23 +53,35 @@ def middle(fields: Fields, axis: str) -> int:
     return len(fields.axis(axis)) // 2
 
 
+def colours(*values: np.ndarray) -> dict[str, object]:
+    """A colour map with its ends that suits several pictures together: from their 1st to their 99th percentile, about
+    zero where they have either sign."""
+    finite = np.concatenate([np.ma.masked_invalid(v).compressed() for v in values])
+    low, high = np.percentile(finite, [1, 99]) if finite.size else (0.0, 1.0)
+    if not low < 0 < high:
+        return {"cmap": "viridis", "vmin": low, "vmax": high}
+    bound = max(abs(low), abs(high))
+    return {"cmap": "RdBu_r", "vmin": -bound, "vmax": bound}
+
+
+def layer(fields: Fields, name: str, axis: str, index: int, time: int = -1) -> np.ndarray:
+    """One layer of voxels across an axis as one number per voxel, rows upwards."""
+    return np.take(scalar(fields, name, time)[0], index, axis=2 - AXES.index(axis))
+
+
 def field_slice(fields: Fields, name: str, axis: str | None = None, index: int | None = None, time: int = -1,
-                ax: Axes | None = None) -> Axes:
-    """One layer of voxels as a picture, with arrows for vectors; blank where the field is undefined."""
+                ax: Axes | None = None, scale: Mapping[str, object] | None = None) -> Axes:
+    """One layer of voxels as a picture, with arrows for vectors; blank where the field is undefined. `scale` is that of
+    `colours`, its own unless given."""
     axis = axis or slice_axis(fields)
     index = middle(fields, axis) if index is None else index
     ax = ax or plt.subplots()[1]
     across, up = [a for a in AXES if a != axis]
-    values, text = scalar(fields, name, time)
-    shown = np.ma.masked_invalid(np.take(values, index, axis=2 - AXES.index(axis)))
+    text = scalar(fields, name, time)[1]
+    shown = np.ma.masked_invalid(layer(fields, name, axis, index, time))
     half = fields.voxel / 2
     ends = [fields.axis(a)[k] + s * half for a in (across, up) for k, s in ((0, -1), (-1, 1))]
-    finite = shown.compressed()
-    low, high = np.percentile(finite, [1, 99]) if finite.size else (0.0, 1.0)
-    signed = low < 0 < high
-    bound = max(abs(low), abs(high))
-    image = ax.imshow(shown, origin="lower", extent=ends, aspect="equal", cmap="RdBu_r" if signed else "viridis",
-                      vmin=-bound if signed else low, vmax=bound if signed else high, interpolation="nearest")
+    image = ax.imshow(shown, origin="lower", extent=ends, aspect="equal", interpolation="nearest", **(scale or colours(shown)))
     ax.figure.colorbar(image, ax=ax, shrink=0.85)
     vectors = fields.values(name, time)
     if vectors.ndim == 4 and vectors.shape[3] == 3 and name not in TRIPLES:
@@ -257,4 +269,32 @@ def table_column(table: Table, name: str, ax: Axes | None = None) -> Axes:
     ax.errorbar(table[first], table[name], yerr=bars, fmt=joined, ms=4, lw=0.8, elinewidth=0.8)
     ax.set_xlabel(label(first, table.unit(first)))
     ax.set_ylabel(label(name, table.unit(name)))
+    return ax
+
+
+def is_map(table: Table) -> bool:
+    """Whether the first two columns are the places of a plane: each once, at even distances along both."""
+    if len(table.columns) < 3:
+        return False
+    first, second = table.columns[:2]
+    places = set(zip(table[first], table[second]))
+    sides = [np.unique(table[c]) for c in (first, second)]
+    steps = [np.diff(side) / np.diff(side).min() for side in sides if len(side) > 1]
+    even = len(steps) == 2 and all(np.allclose(step, np.rint(step), rtol=0, atol=1e-3) for step in steps)
+    return even and table.unit(first) == table.unit(second) and len(places) == len(table[first]) > max(map(len, sides))
+
+
+def table_map(table: Table, name: str, ax: Axes | None = None, scale: Mapping[str, object] | None = None) -> Axes:
+    """A column of a table of places (`is_map`) as a picture; blank where there is none."""
+    ax = ax or plt.subplots()[1]
+    first, second = table.columns[:2]
+    steps = [np.diff(np.unique(table[c])).min() for c in (first, second)]
+    at = [np.rint((table[c] - table[c].min()) / step).astype(int) for c, step in zip((first, second), steps)]
+    shown = np.full([at[1].max() + 1, at[0].max() + 1], np.nan)
+    shown[at[1], at[0]] = table[name]
+    ends = [end for c, step in zip((first, second), steps) for end in (table[c].min() - step / 2, table[c].max() + step / 2)]
+    image = ax.imshow(np.ma.masked_invalid(shown), origin="lower", extent=ends, aspect="equal", interpolation="nearest",
+                      **(scale or colours(shown)))
+    ax.figure.colorbar(image, ax=ax, shrink=0.85)
+    ax.set(xlabel=label(first, table.unit(first)), ylabel=label(second, table.unit(second)), title=label(name, table.unit(name)))
     return ax

@@ -14,6 +14,7 @@
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/scales.hpp"
 #include "pipeline/number.hpp"
+#include "pipeline/spot_input.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -145,6 +146,7 @@ void info(const InfoOptions& options) {
   if (!contact_columns.empty()) print_columns("contact columns", contact_columns);
   const std::vector<std::string> wall_contact_columns = source->wall_contact_columns();
   if (!wall_contact_columns.empty()) print_columns("wall contact columns", wall_contact_columns);
+  if (is_spot_run(*source)) std::cout << "snapshots: " << spot_snapshots << '\n';
   std::cout << "units: " << source->units().name << '\n';
   const Survey last = survey(*source, source->frames().size() - 1);
   print_grains(last);

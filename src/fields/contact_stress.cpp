@@ -45,6 +45,7 @@ void register_contact_stress(StageRegistry& registry) {
   s.components = 9;
   s.dimension = dimension::stress;
   s.additive = true;
+  s.of_forces = true;
   s.by_species = true;
   s.description = "contact stress, tension positive, row-major ij; every contact of the dump counts";
   s.equation = "-sum F_ab,i a_ab,j int_0^1 W(x - x_a + s a_ab) ds  (8)";

@@ -133,6 +133,7 @@ void register_kinetic_stress(StageRegistry& registry) {
   s.components = 9;
   s.dimension = dimension::stress;
   s.additive = true;
+  s.of_forces = true;
   s.by_species = true;
   s.description = "kinetic stress, tension positive, row-major ij";
   s.equation = "-sum m u'_i u'_j W, u' = v_a - u(x_a)  (8)";

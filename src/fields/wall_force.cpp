@@ -30,6 +30,7 @@ void register_wall_force(StageRegistry& registry) {
   s.components = 3;
   s.dimension = dimension::force_density;
   s.additive = true;
+  s.of_forces = true;
   s.description = "force of walls on material, by volume, at the contact points";
   s.equation = "sum F_ab W(x - c_ab), a of the material and b in a wall";
   s.needs = [](const StageSettings&) { return StageNeeds{{}, {wall_force_moment()}}; };

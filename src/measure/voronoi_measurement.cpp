@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "measure/grains.hpp"
 #include "measure/local_packing.hpp"
 #include "measure/option_values.hpp"
+#include "measure/packing_map.hpp"
 #include "measure/spread.hpp"
 #include "measure/structure.hpp"
 
@@ -17,6 +19,7 @@ namespace grainvdb {
 namespace {
 
 constexpr double default_window = 2.2;  // mean diameters
+constexpr const char* no_map = "none";
 
 /// The grains whose centres lie in the box along axes that are not periodic: others have no cell.
 struct Inside {
@@ -70,7 +73,7 @@ class Voronoi : public Measurement {
            "ids " + std::to_string(grains.id[pair->first]) + " and " + std::to_string(grains.id[pair->second]),
            "centres at least 1e-6 diameters apart",
            "Leave one of them out with select, or do without measure.voronoi"});
-    if (!(window_ > 0)) window_ = length_option(options_, "window", default_window, mean_diameter(grains.radius));
+    if (!(window_ > 0)) set_lengths(mean_diameter(grains.radius));
     const VoronoiCells cells = voronoi_cells(frame.box, grains.position, grains.radius);
     const LocalPacking packing(frame.box, grains.position, grains.radius, cells, window_);
     const std::vector<double> smooth = kernel_packing(frame.box, grains.position, grains.radius, kernel_);
@@ -85,13 +88,25 @@ class Voronoi : public Measurement {
       kernel_phi_.add(smooth[i]);
       volume_ += sphere_volume(grains.radius[i]);
       cell_volume_ += cells.volume[i];
+      if (map_) map_->add(vector_at(grains.position, i), sphere_volume(grains.radius[i]), cells.volume[i], smooth[i]);
     }
     add_windows(frame.box, packing, region_.within(frame.box, grains.position));
   }
 
-  std::vector<Table> tables() override { return {cells_table(), windows_table()}; }
+  std::vector<Table> tables() override {
+    std::vector<Table> all{cells_table(), windows_table()};
+    if (map_) all.push_back(map_->table());
+    return all;
+  }
 
  private:
+  void set_lengths(double diameter) {
+    window_ = length_option(options_, "window", default_window, diameter);
+    const std::string& axis = std::get<std::string>(options_.at("map_across"));
+    if (axis != no_map)
+      map_.emplace(static_cast<std::size_t>(axis[0] - 'x'), length_option(options_, "map_bin", 1, diameter));
+  }
+
   void add_windows(const Box& box, const LocalPacking& packing, const Box& counted) {
     const auto xs = middles(box, counted, 0, window_), ys = middles(box, counted, 1, window_);
     for (const double z : middles(box, counted, 2, window_))
@@ -181,6 +196,7 @@ class Voronoi : public Measurement {
   double width_ = number_option(options_, "bin_width");
   double window_ = 0;
   Spread cell_{width_}, local_{width_}, kernel_phi_{width_}, by_centres_{width_}, by_volume_{width_}, by_cells_{width_};
+  std::optional<PackingMap> map_;
   double volume_ = 0, cell_volume_ = 0, not_enclosed_ = 0;
   std::size_t left_out_ = 0, skipped_ = 0;
 };
@@ -201,7 +217,15 @@ MeasurementInfo voronoi_measurement() {
         .default_value = 0.01,
         .help = "width of the bins of packing fraction",
         .minimum = 1e-4,
-        .maximum = 1}});
+        .maximum = 1},
+       {.name = "map_across",
+        .default_value = std::string(no_map),
+        .help = "axis along which grains are taken together in a map of the packing fraction: table voronoi_map",
+        .choices = {no_map, "x", "y", "z"}},
+       {.name = "map_bin",
+        .default_value = 0.0,
+        .help = "edge of the squares of the map [length]; 0: a mean diameter of the first frame",
+        .minimum = 0}});
   info.conflict = CountedRegion::conflict;
   info.needs = [](const OptionValues&) { return MeasurementNeeds{ColumnSet(Column::radius), {}, true}; };
   info.make = [](const MeasurementSetting& setting) { return std::make_unique<Voronoi>(setting); };

@@ -9,6 +9,7 @@
 #include "pipeline/material.hpp"
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/schedule.hpp"
+#include "pipeline/spot_input.hpp"
 #include "pipeline/wall_domain.hpp"
 
 namespace grainvdb {
@@ -138,6 +139,7 @@ void check_frame(const Pipeline& pipeline, const Plan& plan, const Lattice& latt
 }
 
 Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSource& source) {
+  refuse_forces_of_spots(pipeline, plan, source);
   check_plan(pipeline, plan);
   check_wall_grains(pipeline, plan);
   const std::vector<std::size_t> wanted = wanted_frames(pipeline, source);
@@ -151,6 +153,7 @@ Lattice check_against_input(const Pipeline& pipeline, const Plan& plan, FrameSou
 Lattice check_measure_against_input(const Pipeline& pipeline, FrameSource& source) {
   const std::vector<std::size_t> wanted = wanted_frames(pipeline, source);
   if (const auto columns = measured_columns(pipeline)) {
+    refuse_contacts_of_spots(pipeline, source);
     if (columns->has(Column::contacts) && pipeline.input.contacts.files.empty())
       throw ConfigError({pipeline.location("measure"), "the wanted measurements need contacts, and the input has none",
                          "no input.contacts", "input.contacts.files", "Name the contact dumps"});

@@ -11,6 +11,7 @@
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/number.hpp"
 #include "pipeline/output_units.hpp"
+#include "pipeline/spot_input.hpp"
 
 namespace grainvdb {
 namespace {
@@ -45,6 +46,7 @@ Provenance provenance_of(const Pipeline& pipeline, const Plan& plan, const Frame
               {"columns_read", lines(columns, plain)},
               {"computed", lines(plan.stages, [](const Stage* s) { return s->name + ": " + s->equation; })},
               {"not_needed", lines(plan.not_needed, plain)}});
+  if (is_spot_run(source)) all.emplace_back("snapshots", spot_snapshots);
   if (pipeline.reduced) all.emplace_back("reduced_units", OutputUnits(source.units(), pipeline.reduced).scales());
   if (!plan.stages.empty())
     all.emplace_back("grain_volume_error", print_number(grain_volume_error(pipeline.cutoff / pipeline.voxel)));

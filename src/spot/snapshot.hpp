@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/spot_input.hpp"
 #include "spot/spot_model.hpp"
 
 namespace grainvdb::spot {
@@ -19,9 +20,6 @@ Snapshot take_snapshot(const SpotModel& model);
 /// Velocities are displacements since the snapshot before, matched by id, divided by the time between; 0 in the first
 /// one. A particle must not move by half a period in that time.
 std::vector<Vec3> velocities(const Snapshot& before, const Snapshot& now, const Vec3& unit);
-
-/// The column that marks a dump as one of a spot run: there are no forces, and stress means nothing.
-inline constexpr const char* spot_column = "v_spot";
 
 /// What a dump tells of equal grains at a moment.
 struct DumpFrame {

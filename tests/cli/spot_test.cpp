@@ -1,4 +1,6 @@
 /// The spot model as a user runs it: the shipped file makes dumps that the other commands read.
+#include <filesystem>
+
 #include <gmock/gmock.h>
 
 #include "cli/command.hpp"
@@ -48,20 +50,69 @@ TEST(Spot, OneSeedGivesTheSameDumpsAndAnotherGivesOthers) {
   EXPECT_NE(first, last_dump("three", "2"));
 }
 
-TEST(Spot, ForcesThatThereAreNotAreMissed) {
+/// Dumps of the shipped file until a time, made once.
+const std::filesystem::path& short_run() {
+  static const Folder folder;
+  static const bool made = [] {
+    const CommandResult result =
+        run_command({"spot", "run", shipped_file(), "-o", "spot", "--set", "output.end=0.5"}, folder.path());
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return true;
+  }();
+  EXPECT_TRUE(made);
+  return folder.path();
+}
+
+/// A pipeline on these dumps with the density of the grains and with contacts of a simulation: nothing but the
+/// snapshots themselves stands against forces.
+CommandResult run_on_spots(const std::string& wanted, const std::string& command = "run") {
   const Folder folder;
-  ASSERT_EQ(
-      run_command({"spot", "run", shipped_file(), "-o", "spot", "--set", "output.end=0.5"}, folder.path()).exit_code,
-      0);
-  folder.write("p.yaml", R"(grainvdb: 1
-input: {particles: spot/*.dump}
-lattice: {voxel: 0.5}
-kernel: {cutoff: 3}
-output: {fields: [mu]}
-)");
-  const CommandResult result = run_command({"run", "p.yaml"}, folder.path());
-  EXPECT_NE(result.exit_code, 0);
-  EXPECT_THAT(result.err, HasSubstr("contact"));
+  folder.write("p.yaml", "grainvdb: 1\ninput:\n  particles: " + (short_run() / "spot/*.dump").string() +
+                             "\n  density: 1\n  contacts:\n    files: " +
+                             ::grainvdb::testing::in_repository("sample_dumps/silo/contacts_040000.dump.gz") +
+                             "\n    lammps: {ids: pp, forces: pl}\nlattice: {voxel: 0.5}\nkernel: {cutoff: 3}\n" +
+                             wanted + '\n');
+  return run_command({command, "p.yaml"}, folder.path());
+}
+
+class ForcesOfSpots : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ForcesOfSpots, AreRefusedWithTheReason) {
+  for (const char* command : {"run", "validate"}) {
+    const CommandResult result = run_on_spots("output: {fields: [phi, " + GetParam() + "]}", command);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("p.yaml:10: there are no forces in a spot run"),
+                                  HasSubstr("output.fields wants " + GetParam() + "."),
+                                  HasSubstr("velocities in its dumps are displacements"),
+                                  HasSubstr("column v_spot in "), HasSubstr("phi, velocity and shear_rate are there")));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Fields, ForcesOfSpots,
+                         ::testing::Values("stress", "mu", "inertial_number", "gd_over_dv", "fluidity", "pressure",
+                                           "contact_stress", "kinetic_stress", "wall_force", "mu_error"),
+                         [](const auto& param) { return std::string(param.param); });
+
+TEST(Spot, AllFieldsOfForcesAreNamedAtOnce) {
+  EXPECT_THAT(run_on_spots("output: {fields: [stress, phi, mu, inertial_number, gd_over_dv]}").err,
+              HasSubstr("output.fields wants stress, mu, inertial_number, gd_over_dv."));
+}
+
+TEST(Spot, MeasurementsOfForcesAreRefusedToo) {
+  EXPECT_THAT(run_on_spots("measure: {fluidity_fit: {}}").err,
+              AllOf(HasSubstr("there are no forces in a spot run"), HasSubstr("measure.fluidity_fit wants stress")));
+  EXPECT_THAT(run_on_spots("measure: {coordination: {contacts: dump}}").err,
+              AllOf(HasSubstr("measure.coordination wants the contacts of a simulation"), HasSubstr("contacts: gap")));
+  EXPECT_THAT(run_on_spots("trace: {seeds: {points: [[0, 4, 5]]}, dt: 0.1, duration: 1, record: [mu]}").err,
+              HasSubstr("trace.record wants mu."));
+}
+
+TEST(Spot, WhatIsMadeOfPlacesIsThereAndSaysWhereFrom) {
+  const CommandResult result = run_on_spots(
+      "output: {fields: [phi, velocity, shear_rate, temperature]}\nmeasure: {coordination: {contacts: gap}}");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const CommandResult info = run_command({"info", "spot/spot_*.dump"}, short_run());
+  EXPECT_THAT(info.out, HasSubstr("snapshots: of a spot run: there are no forces"));
 }
 
 TEST(Spot, FilesOfTheOtherKindAreToldApart) {

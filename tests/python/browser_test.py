@@ -6,8 +6,9 @@ import subprocess
 import tempfile
 import unittest
 
-from support import result
+from support import result, side_by_side
 
+from grainvdb.beside import write_comparison
 from grainvdb.report import write_report
 
 CHROMIUM = shutil.which("chromium")
@@ -23,9 +24,15 @@ document.title = [...document.images].map(image => image.naturalWidth).join(" ")
 @unittest.skipUnless(CHROMIUM, "Chromium is not installed")
 class Browser(unittest.TestCase):
     def test_draws_every_picture_within_the_window(self):
+        self.look(lambda folder: write_report(str(result()), folder))
+
+    def test_draws_results_side_by_side(self):
+        self.look(lambda folder: write_comparison([str(one) for one in side_by_side()], folder))
+
+    def look(self, write):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            files = write_report(str(result()), str(folder))
+            files = write(str(folder))
             page = (folder / "report.html").read_text()
             (folder / "looked_at.html").write_text(page.replace("</body>", LOOK))
             shown = subprocess.run([CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", f"--window-size={WIDTH},900", "--dump-dom",

@@ -15,7 +15,7 @@ from support import COMMAND, at_scales, reduced, result, write_tracers
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
-class _Page(html.parser.HTMLParser):
+class Page(html.parser.HTMLParser):
     """What a page shows, and whatever it would load from elsewhere."""
 
     def __init__(self, text):
@@ -62,7 +62,7 @@ class Report(unittest.TestCase):
         shutil.copy(result() / "run.json", self.folder)
         done = report(self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
-        page = _Page((self.folder / "report/report.html").read_text())
+        page = Page((self.folder / "report/report.html").read_text())
         self.assertEqual(page.headings, ["Overview", "Slices", "Profiles", "Rheology", "Where fields have no value", "Fields", "Tracers", "What the run took", "Provenance"])
         self.assertEqual(page.loads, [])
         shown = [base64.b64decode(source.split(",")[1]) for source in page.pictures]
@@ -82,7 +82,7 @@ class Report(unittest.TestCase):
         with tempfile.TemporaryDirectory() as page:
             done = report(at_scales(), "--output", page)
             self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual(_Page((pathlib.Path(page) / "report.html").read_text()).headings, ["Scales"])
+            self.assertEqual(Page((pathlib.Path(page) / "report.html").read_text()).headings, ["Scales"])
         results = {name: open_fields(at_scales() / name) for name in ("c0.0016_h4.0e-04", "c0.0024_h8.0e-04")}
         lines = plots.scales(results, "phi").get_lines()
         self.assertEqual([line.get_label() for line in lines], list(results))

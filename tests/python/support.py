@@ -45,6 +45,17 @@ def measured() -> pathlib.Path:
     return folder
 
 
+@functools.cache
+def side_by_side() -> tuple[pathlib.Path, pathlib.Path]:
+    """The output folders of the shipped comparison: of the sample silo, and of a short spot run of it."""
+    folder = pathlib.Path(_kept.name) / "side-by-side"
+    subprocess.run([COMMAND, "spot", "run", ROOT / "pipelines/spot_silo.yaml", "--set", "output.interval=0.3", "--set", "output.end=1.2", "--output",
+                    folder / "spot", "--quiet"], check=True)
+    for name, more in (("dem", []), ("spots", ["--set", f"input.particles={folder}/spot/spot_*.dump"])):
+        subprocess.run([COMMAND, "run", ROOT / "pipelines/spot_compare.yaml", *more, "--output", folder / name, "--quiet"], check=True)
+    return folder / "dem", folder / "spots"
+
+
 def write_tracers(folder: pathlib.Path) -> None:
     """tracers.h5 as the library writes it: five tracers over three samples, in a box 4 long along x and 10 along z."""
     subprocess.run([os.environ["GRAINVDB_MAKE_TRACERS"], folder], check=True)

@@ -2,6 +2,7 @@
 #include "measure/structure.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
@@ -184,6 +185,39 @@ TEST(Voronoi, OfACrystalIsItsPackingByAllMeasures) {
   EXPECT_TRUE(tables.at(0).remarks.empty());
 }
 
+// Layers of touching grains, one diameter apart, and above them a diameter and a half: a cell is as high as the gaps
+// below and above it on average.
+TEST(Voronoi, MapTellsLooseLayersFromDenseOnes) {
+  Scene scene;
+  scene.box = {{-0.1, 0, 0}, {3.9, 3, 9.5}, {true, true, true}};
+  const std::vector<double> heights{0.25, 1.25, 2.25, 3.25, 4.75, 6.25, 7.75}, cells{1.5, 1, 1, 1.25, 1.5, 1.5, 1.75};
+  for (const double z : heights)
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 3; ++j) scene.add({i + 0.5, j + 0.5, z}, 0.5);
+  const std::vector<Frame> frames{scene.frame(), scene.frame()};
+  const OptionValues along_y{{"map_across", std::string("y")}, {"map_bin", 1.0}};
+  const Table map = measure("voronoi", frames, along_y).at(2);
+  EXPECT_EQ(map.name, "voronoi_map");
+  ASSERT_EQ(map.columns.size(), 5U);
+  EXPECT_EQ(map.columns[0].name, "x");
+  EXPECT_EQ(map.columns[1].name, "z");
+  ASSERT_EQ(map.columns[0].values.size(), 4 * heights.size());
+  for (std::size_t row = 0; row < map.columns[0].values.size(); ++row) {
+    const std::size_t layer = row / 4;
+    EXPECT_EQ(map.columns[0].values[row], static_cast<double>(row % 4) + 0.5);
+    EXPECT_EQ(map.columns[1].values[row], std::floor(heights[layer]) + 0.5);
+    EXPECT_NEAR(map.columns[2].values[row], std::numbers::pi / 6 / cells[layer], 1e-9);
+    EXPECT_EQ(map.columns[4].values[row], 6);  // three in each frame
+  }
+  // The kernel of three diameters reaches beyond a layer, but not far enough to hide which side is dense.
+  EXPECT_GT(map.columns[3].values[4], map.columns[3].values[20]);
+}
+TEST(Voronoi, MapOfNothingSaysSo) {
+  const OptionValues far{{"map_across", std::string("x")}, {"lo", std::vector<double>{1e3, 1e3, 1e3}}};
+  const Table map = measure("voronoi", random_frames(1), far).at(2);
+  EXPECT_TRUE(map.columns[0].values.empty());
+  EXPECT_FALSE(map.remarks.empty());
+}
 TEST(Voronoi, LeavesOutGrainsBehindFacesAndSaysSo) {
   Frame f = poisson({{0, 0, 0}, {8, 9, 10}, {true, true, false}}, 700, 3).frame();
   f.particles.position[2][5] = 11;

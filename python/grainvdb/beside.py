@@ -1,0 +1,216 @@
+"""One page that sets several results beside each other: `grainvdb report DIR --beside OTHER`."""
+from __future__ import annotations
+
+import contextlib
+import difflib
+import html
+import os
+from collections.abc import Mapping
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+from . import compare, plots
+from .compare import Result, Results
+from .fields import AXES
+from .page import FIELDS_FIRST, PROFILES_FIRST, Page, html_table, number, ordered, panels, provenance, with_error, write
+from .tables import Table
+
+
+def _legend(figure: plt.Figure) -> plt.Figure:
+    """With what the lines of its first panel are called, above all panels."""
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="lower center", bbox_to_anchor=(0.5, 1), ncols=4, frameon=False)
+    return figure
+
+
+def _overview(page: Page, results: Results) -> None:
+    def row(what, tell):
+        return (what, *(tell(result) for result in results.values()))
+
+    rows = [row("folder", lambda r: r.folder), row("made by", lambda r: f"grainvdb {r.provenance.get('version', '?')}"),
+            row("snapshots", lambda r: r.provenance.get("snapshots", "of a simulation")),
+            row("frames", lambda r: str(len(r.provenance.get("steps", "").split())))]
+    if all(result.fields is not None for result in results.values()):
+        rows += [row("mean time", lambda r: f"{number(r.fields.times[-1])} {r.fields.unit('time')}"),
+                 row("voxels", lambda r: " × ".join(str(len(r.fields.axis(a))) for a in AXES) + f", edge {number(r.fields.voxel)} {r.fields.unit('x')}")]
+    parts = [html_table(rows, ("", *results))]
+    parts += [f"<p>{html.escape(text)}</p>" for text in compare.missing(results)]
+    page.add("What is compared", *parts, *_differing_keys(results))
+
+
+def _differing_keys(results: Results) -> list[str]:
+    """Lines of the pipelines that differ between the first and each other result."""
+    (first, reference), *others = results.items()
+    parts = []
+    for label, result in others:
+        a, b = (r.provenance.get("pipeline", "").splitlines() for r in (reference, result))
+        lines = [line for line in difflib.unified_diff(a, b, first, label, lineterm="", n=0) if not line.startswith("@@")]
+        said = "\n".join(lines) if lines else "none"
+        parts.append(f"<details open><summary>Lines of the pipelines that differ, {html.escape(first)} against {html.escape(label)}</summary>"
+                     f"<pre>{html.escape(said)}</pre></details>")
+    return parts
+
+
+def number_rows(tables: Mapping[str, Mapping[str, Table]]) -> list[tuple[str, ...]]:
+    """A row for each number that all results have: table, quantity, what it is, unit, and the value of the first; then of each other its value, the
+    difference from the first and that difference in combined standard errors."""
+    rows = []
+    for name, by_label in tables.items():
+        first, *others = (table.numbers for table in by_label.values())
+        for key, reference in first.items():
+            if not all(key in other for other in others):
+                continue
+            row = [name, key, reference.description, reference.unit, with_error(reference.value, reference.error)]
+            for other in (o[key] for o in others):
+                apart = compare.deviation(reference, other)
+                row += [with_error(other.value, other.error), number(other.value - reference.value), "-" if np.isnan(apart) else f"{apart:+.1f}"]
+            rows.append(tuple(row))
+    return rows
+
+
+def _numbers(page: Page, tables: Mapping[str, Mapping[str, Table]]) -> None:
+    rows = number_rows(tables)
+    if not rows:
+        return
+    first, *others = next(iter(tables.values()))
+    head = ("table", "quantity", "what it is", "unit", first, *(text for label in others for text in (label, "difference", "in errors")))
+    page.add("Numbers", "<p>± is the standard error; the last column is the difference over √(σ₁² + σ₂²), where both have one. "
+             "Errors are those that the measurements state, and most of these are lower bounds: see their pages.</p>", html_table(rows, head))
+
+
+def _profiles(page: Page, results: Results, axis: str) -> None:
+    names = ordered(compare.common_fields(results), PROFILES_FIRST)
+    fields = {label: result.fields for label, result in results.items()}
+    draw = [lambda ax, n=n: plots.scales(fields, n, axis, ax=ax) for n in names]
+    page.add("Profiles", page.picture("profiles", _legend(panels(draw, 3, (3.6, 3.2))), f"Means over each layer of voxels across {axis}, of vectors the magnitude."))
+
+
+def _velocity(page: Page, results: Results, along: str, cut: str) -> None:
+    across = next(axis for axis in AXES if axis not in (along, cut))
+    at = compare.heights(results, "velocity", along, across)
+    if at.size == 0:
+        return
+    draw = [lambda ax, z=z: compare.profile_across(results, "velocity", z, along, across, ax) for z in at]
+    page.add("Velocity profiles", page.picture("velocity_profiles", _legend(panels(draw, 3, (3.9, 2.9))),
+                                               f"The component of the velocity along {along} against {across} at heights {along}, averaged over {cut}."))
+
+
+def _grid(draw: list, columns: int, sides: list[tuple[float, float]]) -> plt.Figure:
+    """Pictures of one plane, a row for each quantity, in the shape of the plane."""
+    across, up = (high - low for low, high in sides)
+    return panels(draw, columns, (4.2, float(np.clip(3.2 * up / across, 1.6, 7)) + 0.7))
+
+
+def _spans(ends: list[tuple[np.ndarray, np.ndarray]], margin: float) -> list[tuple[float, float]]:
+    """From the least to the greatest place along both axes of a plane, in any of the results."""
+    return [(min(e[k].min() for e in ends) - margin, max(e[k].max() for e in ends) + margin) for k in (0, 1)]
+
+
+def slices(results: Results, cut: str, index: list[int]) -> plt.Figure:
+    """The layer of each result with that index across the axis `cut`: a row for each field that all have, on one colour
+    scale and over one span of places."""
+    across, up = [axis for axis in AXES if axis != cut]
+    fields = [result.fields for result in results.values()]
+    sides = _spans([(f.axis(across), f.axis(up)) for f in fields], fields[0].voxel)
+    draw = []
+    for name in ordered(compare.common_fields(results), FIELDS_FIRST):
+        scale = plots.colours(*(plots.layer(f, name, cut, k) for f, k in zip(fields, index)))
+        for label, f, k in zip(results, fields, index):
+            def one(ax, name=name, scale=scale, label=label, f=f, k=k):
+                plots.field_slice(f, name, cut, k, ax=ax, scale=scale)
+                ax.set(xlim=sides[0], ylim=sides[1], title=f"{label}: {ax.get_title()}")
+            draw.append(one)
+    return _grid(draw, len(results), sides)
+
+
+def maps(tables: Mapping[str, Table], names: list[str]) -> plt.Figure:
+    """Columns of tables of places, a row for each, on one colour scale and over one span of places."""
+    first, second = next(iter(tables.values())).columns[:2]
+    sides = _spans([(t[first], t[second]) for t in tables.values()], 0)
+    draw = []
+    for name in names:
+        scale = plots.colours(*(table[name] for table in tables.values()))
+        for label, table in tables.items():
+            def one(ax, name=name, scale=scale, label=label, table=table):
+                plots.table_map(table, name, ax, scale)
+                ax.set(xlim=sides[0], ylim=sides[1], title=f"{label}: {ax.get_title()}")
+            draw.append(one)
+    return _grid(draw, len(tables), sides)
+
+
+def _slices(page: Page, results: Results, cut: str, at: float | None) -> None:
+    fields = [result.fields for result in results.values()]
+    index = [plots.middle(f, cut) if at is None else int(np.argmin(np.abs(f.axis(cut) - at))) for f in fields]
+    where = ", ".join(f"{label} at {cut} = {number(f.axis(cut)[k])}" for label, f, k in zip(results, fields, index))
+    page.add("Slices", page.picture("slices", slices(results, cut, index), f"Slices ({where}), each field on one colour scale; blank: no value."))
+
+
+def _spreading(page: Page, tables: Mapping[str, Table]) -> None:
+    names = [c for c in compare.shared_columns(tables) if c.startswith("variance_")]
+    draw = [lambda ax, c=c: compare.columns(tables, c, ax, against="travelled") for c in names]
+    page.add("Spreading of grains", page.picture("spreading", _legend(panels(draw, 3, (3.9, 2.9))),
+                                                 "Variance of the displacements of grains about their mean motion against the way that they fell."))
+
+
+def _tracers(page: Page, results: Results) -> None:
+    draw = []
+    for label, result in results.items():
+        def one(ax, label=label, tracers=result.tracers):
+            plots.tracer_paths(tracers, ax)
+            ax.set(title=label)
+        draw.append(one)
+    page.add("Tracers", page.picture("tracers", panels(draw, len(results), (5, 5)), "Paths of tracers from their seeds (dots)."))
+
+
+def _measured(page: Page, name: str, tables: Mapping[str, Table]) -> None:
+    first = next(iter(tables.values()))
+    parts = [f"<p>{html.escape(first.description)}: {html.escape(first.equation)}</p>"]
+    parts += [f"<p>Note on {html.escape(label)}: {html.escape(remark)}</p>" for label, table in tables.items() for remark in table.remarks]
+    drawn = compare.shared_columns(tables)
+    if all(plots.is_map(table) for table in tables.values()):
+        drawn = [c for c in drawn if c != first.columns[1]]
+        parts.append(page.picture(f"table_{name}", maps(tables, drawn), f"Table {name}, each column on one colour scale."))
+    elif drawn and all(len(t[t.columns[0]]) > 1 and t.columns[0] == first.columns[0] for t in tables.values()):
+        draw = [lambda ax, c=c: compare.columns(tables, c, ax) for c in drawn]
+        parts.append(page.picture(f"table_{name}", _legend(panels(draw, 3, (3.9, 2.9))), f"Table {name}; bars are standard errors."))
+    page.add(f"Measured: {name.replace('_', ' ')}", *parts)
+
+
+def labels_of(folders: list[str], labels: list[str] | None) -> list[str]:
+    """Those given, or the names of the folders, or their paths where names come twice."""
+    labels = labels or [os.path.basename(os.path.abspath(folder)) for folder in folders]
+    if len(set(labels)) < len(folders):
+        labels = [os.path.abspath(folder) for folder in folders]
+    return labels
+
+
+def write_comparison(folders: list[str], output: str | None = None, labels: list[str] | None = None, axis: str = "z",
+                     cut: str | None = None, at: float | None = None) -> list[str]:
+    """Writes report.html and its pictures into `output` (beside/ in the first folder unless given) and returns the files.
+
+    Raises FileNotFoundError for a folder without a result, and hdf.ResultError for files that are something else and for
+    results in different units.
+    """
+    with contextlib.ExitStack() as stack:
+        names = labels_of(folders, labels)
+        results: dict[str, Result] = {label: stack.enter_context(compare.open_result(folder)) for label, folder in zip(names, folders)}
+        compare.check_units(results)
+        page = Page("grainvdb: " + " beside ".join(names))
+        tables = compare.common_tables(results)
+        _overview(page, results)
+        _numbers(page, tables)
+        if fields := compare.common_fields(results):
+            cut = cut or plots.slice_axis(next(iter(results.values())).fields)
+            if "velocity" in fields and cut != axis:
+                _velocity(page, results, axis, cut)
+            _slices(page, results, cut, at)
+            _profiles(page, results, axis)
+        if "diffusion" in tables:
+            _spreading(page, tables["diffusion"])
+        if all(result.tracers is not None for result in results.values()):
+            _tracers(page, results)
+        for name, by_label in tables.items():
+            _measured(page, name, by_label)
+        for label, result in results.items():
+            provenance(page, f"Provenance of {label}", result.provenance)
+    return list(write(page, output or os.path.join(folders[0], "beside")))

@@ -1,0 +1,178 @@
+"""Results side by side: which numbers and curves they share, and pictures with all of them."""
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+
+from . import hdf, plots
+from .fields import AXES, Fields
+from .tables import Number, Table, Tables
+from .tracers import Tracers
+
+
+@dataclass
+class Result:
+    """What lies in the output folder of a run; what is not there is None."""
+
+    folder: str
+    fields: Fields | None
+    tables: Tables | None
+    tracers: Tracers | None
+
+    @property
+    def parts(self) -> list[Fields | Tables | Tracers]:
+        return [part for part in (self.fields, self.tables, self.tracers) if part is not None]
+
+    @property
+    def provenance(self) -> dict[str, str]:
+        return self.parts[0].provenance
+
+    def units(self) -> dict[str, str]:
+        """Of everything in it, by what it is."""
+        units = {}
+        if self.fields is not None:
+            units |= {f"the axis {axis}": self.fields.unit(axis) for axis in AXES}
+            units |= {f"the field {name}": self.fields.unit(name) for name in self.fields}
+        for name, table in (self.tables or {}).items():
+            units |= {f"{name}.{column}": table.unit(column) for column in table.columns}
+            units |= {f"{name}.{number.name}": number.unit for number in table.numbers.values()}
+        if self.tracers is not None:
+            units["the places of tracers"] = self.tracers.unit("position")
+        return units
+
+    def close(self) -> None:
+        for part in self.parts:
+            part.close()
+
+    def __enter__(self) -> Result:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def open_result(folder: str | os.PathLike[str]) -> Result:
+    """Opens what an output folder holds. Raises FileNotFoundError where it holds no result, ResultError for files that
+    are something else."""
+    def part(name, kind):
+        path = os.path.join(folder, name)
+        return kind(path) if os.path.isfile(path) else None
+
+    result = Result(os.fspath(folder), part("fields.hdf", Fields), part("tables.h5", Tables), part("tracers.h5", Tracers))
+    if not result.parts:
+        raise FileNotFoundError(f"{os.fspath(folder)}: neither fields.hdf nor tracers.h5 nor tables.h5 is there; "
+                                "expected the output folder of `grainvdb run`")
+    return result
+
+
+Results = Mapping[str, Result]
+
+
+def check_units(results: Results) -> None:
+    """Raises ResultError where results tell the same thing in different units: numbers would be compared that mean
+    different things."""
+    known: dict[str, tuple[str, str]] = {}
+    differ = []
+    for label, result in results.items():
+        for what, unit in result.units().items():
+            first, expected = known.setdefault(what, (label, unit))
+            if unit != expected:
+                differ.append(f"{what} is in {expected} in {first}, in {unit} in {label}")
+    if differ:
+        more = f", and {len(differ) - 3} more" if len(differ) > 3 else ""
+        raise hdf.ResultError(f"the results are in different units: {'; '.join(differ[:3])}{more}. Make them with the same "
+                              "units, or all with output.reduced: in grain diameters, gravity and the density of the grains")
+
+
+def deviation(a: Number, b: Number) -> float:
+    """(b - a)/√(σ_a² + σ_b²), the difference in combined standard errors; NaN where one has none."""
+    together = np.hypot(a.error, b.error)
+    return (b.value - a.value) / together if together > 0 else float("nan")
+
+
+def common_fields(results: Results) -> list[str]:
+    """Names of the fields that all have."""
+    all_fields = [result.fields for result in results.values()]
+    if any(fields is None for fields in all_fields):
+        return []
+    return [name for name in all_fields[0] if all(name in fields for fields in all_fields)]
+
+
+def common_tables(results: Results) -> dict[str, dict[str, Table]]:
+    """The tables that all have, of each result by its label."""
+    all_tables = {label: result.tables or {} for label, result in results.items()}
+    first = next(iter(all_tables.values()))
+    return {name: {label: tables[name] for label, tables in all_tables.items()}
+            for name in first if all(name in tables for tables in all_tables.values())}
+
+
+def missing(results: Results) -> list[str]:
+    """Sentences on what only some of them have, which is not compared."""
+    have = {label: {f"the field {n}" for n in result.fields or ()} | {f"the table {n}" for n in result.tables or ()}
+            for label, result in results.items()}
+    every = set().union(*have.values())
+    return [f"{label} lacks {', '.join(sorted(every - names))}." for label, names in have.items() if every - names]
+
+
+def shared_columns(tables: Mapping[str, Table]) -> list[str]:
+    """Columns that all have, errors and the first one apart, with a value somewhere."""
+    first = next(iter(tables.values()))
+    return [c for c in first.columns[1:] if not c.endswith("_error") and all(c in t.columns for t in tables.values())
+            and any(np.any(np.isfinite(t[c])) for t in tables.values())]
+
+
+def columns(tables: Mapping[str, Table], name: str, ax: Axes | None = None, against: str | None = None) -> Axes:
+    """A column of each table against the first or another one, with its standard errors."""
+    ax = ax or plt.subplots()[1]
+    for label, table in tables.items():
+        x = against or table.columns[0]
+        bars = table[f"{name}_error"] if f"{name}_error" in table.columns else None
+        line = ".-" if np.all(np.diff(table[x]) > 0) else "."
+        ax.errorbar(table[x], table[name], yerr=bars, fmt=line, ms=4, lw=0.9, elinewidth=0.8, label=label)
+        ax.set(xlabel=plots.label(x, table.unit(x)), ylabel=plots.label(name, table.unit(name)))
+    ax.grid(alpha=0.3)
+    return ax
+
+
+def heights(results: Results, name: str, along: str, across: str, count: int = 6) -> np.ndarray:
+    """Places along an axis, far from each other, at which every result knows a field over more than half of the width
+    that it has anywhere; voxel centres of the first result."""
+    spans = []
+    for result in results.values():
+        known = np.isfinite(lines(result.fields, name, along, across)).sum(axis=1)
+        at = result.fields.axis(along)[known > 0.5 * known.max()]
+        spans.append((at.min(), at.max()))
+    low, high = max(s[0] for s in spans), min(s[1] for s in spans)
+    if low >= high:
+        return np.array([])
+    centres = next(iter(results.values())).fields.axis(along)
+    return np.unique([centres[np.argmin(np.abs(centres - at))] for at in np.linspace(low, high, count + 2)[1:-1]])
+
+
+def lines(fields: Fields, name: str, along: str, across: str) -> np.ndarray:
+    """A field, of a vector its component along the first axis, as means over the third axis where it is known; of shape
+    (along, across)."""
+    values = fields.values(name, -1).astype(float)
+    if values.ndim == 4:
+        values = values[..., AXES.index(along)]
+    third = next(axis for axis in AXES if axis not in (along, across))
+    means = np.ma.masked_invalid(values).mean(axis=2 - AXES.index(third)).filled(np.nan)
+    return means if AXES.index(along) > AXES.index(across) else means.T
+
+
+def profile_across(results: Results, name: str, at: float, along: str, across: str, ax: Axes | None = None) -> Axes:
+    """The line of voxels nearest to a place along an axis, over another axis."""
+    ax = ax or plt.subplots()[1]
+    for label, result in results.items():
+        k = int(np.argmin(np.abs(result.fields.axis(along) - at)))
+        ax.plot(result.fields.axis(across), lines(result.fields, name, along, across)[k], ".-", ms=4, lw=0.9, label=label)
+    unit = result.fields.unit(name)
+    ax.set(xlabel=plots.label(across, result.fields.unit(across)), ylabel=plots.label(f"{name} {along}", unit),
+           title=f"{along} = {at:.3g} {result.fields.unit(along)}")
+    ax.grid(alpha=0.3)
+    return ax
