@@ -63,7 +63,7 @@ RunReport measured(const Pipeline& pipeline, const Plan& plan, FrameSource& sour
 void print_parameters(const RunReport& report) {
   RunReport shown = report;
   std::erase_if(shown.tables, [](const Table& table) { return table.name != "spot_calibration"; });
-  std::cout << describe(shown);
+  std::cout << cli::describe(shown);
 }
 
 void calibrate(const SpotCalibrateOptions& options) {

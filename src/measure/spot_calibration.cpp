@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "measure/option_values.hpp"
 #include "measure/plane_counts.hpp"
 #include "measure/plasticity.hpp"
+#include "measure/spot_options.hpp"
 #include "measure/spot_parameters.hpp"
 #include "measure/spots.hpp"
 #include "measure/structure.hpp"
@@ -31,9 +33,17 @@ std::vector<double> numbers_option(const OptionValues& options, const char* name
   return std::get<std::vector<double>>(options.at(name));
 }
 
-SmoothBox smooth_box(const OptionValues& options) {
-  const auto lo = numbers_option(options, "lo"), hi = numbers_option(options, "hi");
-  return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
+// Against a frame at rest, the whole width of the silo counts: what flows down within the box came from places where
+// the spots were fewer when they first came by, and has lost less than the spots around it say. Between two planes
+// right across, what is missing is what flowed out below before the flow began above.
+SmoothBox drop_box(const OptionValues& options) {
+  SmoothBox box = smooth_box(options);
+  if (reference_of(options) == Loosening::Reference::layers || number_option(options, "phi_at_rest") > 0) return box;
+  for (const std::size_t a : {0, 1}) {
+    box.lo[a] = -std::numeric_limits<double>::infinity();
+    box.hi[a] = std::numeric_limits<double>::infinity();
+  }
+  return box;
 }
 
 std::vector<double> plane_heights(const OptionValues& options) {
@@ -92,14 +102,9 @@ Part widths_part(const OptionValues& o) {
            {"origin", std::string("fitted")}}};
 }
 
-// Along the slot there is no mean motion by symmetry, and none needs to be fitted: what is taken off with a fit to a
-// box of a few spots' size is a good part of what spots do to it.
 Part correlation_part(const OptionValues& o) {
   return {velocity_correlation_measurement(),
-          {{"lo", o.at("lo")},
-           {"hi", o.at("hi")},
-           {"about", std::string("none")},
-           {"components", std::vector<std::string>{"y"}}}};
+          {{"lo", o.at("lo")}, {"hi", o.at("hi")}, {"about", o.at("about")}, {"components", o.at("components")}}};
 }
 
 Part diffusion_part(const OptionValues& o) {
@@ -108,7 +113,7 @@ Part diffusion_part(const OptionValues& o) {
            {"hi", o.at("hi")},
            {"lags", o.at("lags")},
            {"fit_from", o.at("fit_from")},
-           {"about", std::string("none")}}};
+           {"about", o.at("about")}}};
 }
 
 class SpotCalibration : public Measurement {
@@ -123,7 +128,8 @@ class SpotCalibration : public Measurement {
         widths_(widths_part(options_).make(setting_)),
         correlation_(correlation_part(options_).make(setting_)),
         diffusion_(diffusion_part(options_).make(setting_)),
-        loosening_(smooth_box(options_), 2),
+        region_(smooth_box(options_), 2),
+        loosening_(drop_box(options_), 2, reference_of(options_)),
         counts_(2, plane_heights(options_)) {
     if (const double phi = number_option(options_, "phi_at_rest"); phi > 0) loosening_.rest(phi);
   }
@@ -136,9 +142,10 @@ class SpotCalibration : public Measurement {
 
   void add(const Frame& frame) override {
     if (!(diameter_ > 0) && frame.particles.size() > 0) diameter_ = 2 * frame.particles.radius.front();
-    if (!loosening_.has_rest()) return loosening_.rest(frame);
+    if (!loosening_.has_reference()) return loosening_.rest(frame);
     if (frame.step < flow_from_ || frame.particles.size() == 0) return;
     for (Measurement* part : {correlation_.get(), diffusion_.get()}) part->add(frame);
+    region_.add(frame, diameter_);
     loosening_.add(frame);
     counts_.add(frame);
     add_to_window(frame);
@@ -183,10 +190,8 @@ class SpotCalibration : public Measurement {
     o.radius = widened(number_of(tables, "velocity_correlation", "correlation_radius"), error_of_mean(radii_));
     o.b = number_of(tables, "kinematic_width", "b");
     o.grain_diffusion = widened(number_of(tables, "diffusion", "diffusion_length_y"), error_of_mean(diffusions_));
-    if (loosening_.frames() > 0) {
-      o.number_density = loosening_.number_density();
-      o.speed = loosening_.speed();
-    }
+    if (loosening_.frames() > 0) o.number_density = mean_by_time_groups(region_.density());
+    o.speed = loosening_.result().speed;
     o.outflow = counts_.mean_rate();
     for (const Table& t : tables)
       if (t.name == "diffusion")
@@ -209,7 +214,7 @@ class SpotCalibration : public Measurement {
           {.name = name, .value = e.value, .error = e.error, .dimension = d, .description = description});
     };
     const auto times = [](double factor, const Estimate& e) { return Estimate{factor * e.value, factor * e.error}; };
-    add("radius", o.radius, dimension::length, "R_s of spots, from the velocity correlation along y");
+    add("radius", o.radius, dimension::length, "R_s of spots, from the velocity correlation");
     add("amplitude", amplitude, dimension::none, "A of the correlation: 1 where spots are all that moves grains");
     add("b", o.b, dimension::length, "of dv/dz = b d2v/dx2, from the widths of profiles");
     add("step_side", p.step, dimension::length, "of a spot along x and y, sqrt(2 b step_up)");
@@ -218,8 +223,9 @@ class SpotCalibration : public Measurement {
     add("share", p.share, dimension::none, "s, in the slope of the variance over the lags");
     add("influence", p.influence, dimension::none, "w: grains move by 1/w of a spot's step");
     add("phi", times(volume, o.number_density), dimension::none, "packing fraction in flow");
-    add("drop", loosening_.frames() > 0 ? times(volume, loosening_.drop()) : Estimate{}, dimension::none,
-        "packing fraction at rest less that");
+    const Loosening::Result loosened = loosening_.result();
+    add("drop", times(1 / loosened.at_rest.value, loosened.drop), dimension::none,
+        "grains that are missing in flow, as a share of those at rest");
     add("grains", p.grains, dimension::none, "N, in a spot");
     add("volume", p.volume, dimension::none, "V_s/V_p = N/w, free volume of a spot in grain volumes");
     add("outflow", o.outflow, dimension::rate, "Q, grains per time, at five heights of the box");
@@ -258,6 +264,7 @@ class SpotCalibration : public Measurement {
   std::int64_t flow_from_;
   std::size_t lags_, outputs_ = 0;
   std::unique_ptr<Measurement> widths_, correlation_, diffusion_;
+  BoxFlow region_;
   Loosening loosening_;
   PlaneCounts counts_;
   std::unique_ptr<Measurement> window_correlation_, window_diffusion_;
@@ -286,6 +293,15 @@ std::vector<OptionInfo> calibration_options() {
         .help = "voxels with a packing fraction below this do not count for widths",
         .minimum = 0,
         .maximum = 1},
+       {.name = "about",
+        .default_value = std::string("none"),
+        .help = "mean motion that is taken off velocities and displacements: none along the slot by symmetry; the mean "
+                "or the linear flow of the box, where it slides as a whole or other components count",
+        .choices = {"none", "mean", "linear"}},
+       {.name = "components",
+        .default_value = std::vector<std::string>{"y"},
+        .help = "of the velocity, whose correlation tells the radius",
+        .choices = {"x", "y", "z"}},
        {.name = "lags",
         .default_value = std::int64_t{4},
         .help = "steps between frames of a window in which grains spread, see 'diffusion'; 0: one window of all",
@@ -295,14 +311,9 @@ std::vector<OptionInfo> calibration_options() {
         .default_value = 0.0,
         .help = "least time in a window that is fitted [time]; 0: all",
         .minimum = 0},
-       {.name = "flow_from",
-        .default_value = std::int64_t{0},
-        .help = "step of the first frame of the steady flow; those between the first and it count for nothing"},
-       {.name = "phi_at_rest",
-        .default_value = 0.0,
-        .help = "packing fraction of the box at rest; 0: that of the first frame, which is then no part of the flow",
-        .minimum = 0,
-        .maximum = 1},
+       reference_option(),
+       flow_from_option(),
+       phi_at_rest_option(),
        length_info("rise", "of a spot in one step [length]; 0: a tenth of the diameter")});
 }
 
@@ -318,6 +329,8 @@ MeasurementInfo spot_calibration_measurement() {
     const std::vector<double> walls = numbers_option(options, "side_walls");
     if (!walls.empty() && !(walls.size() == 2 && walls[0] < walls[1]))
       return OptionConflict{"side_walls", std::to_string(walls.size()) + " numbers", "two numbers in order, or none"};
+    if (std::get<std::vector<std::string>>(options.at("components")).empty())
+      return OptionConflict{"components", "none", "at least one of x, y, z"};
     return whole_box_conflict(options);
   };
   info.needs = [](const OptionValues& options) {
