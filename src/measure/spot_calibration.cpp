@@ -129,6 +129,7 @@ class SpotCalibration : public Measurement {
         correlation_(correlation_part(options_).make(setting_)),
         diffusion_(diffusion_part(options_).make(setting_)),
         region_(smooth_box(options_), 2),
+        region_at_rest_(smooth_box(options_), 2),
         loosening_(drop_box(options_), 2, reference_of(options_)),
         counts_(2, plane_heights(options_)) {
     if (const double phi = number_option(options_, "phi_at_rest"); phi > 0) loosening_.rest(phi);
@@ -142,7 +143,10 @@ class SpotCalibration : public Measurement {
 
   void add(const Frame& frame) override {
     if (!(diameter_ > 0) && frame.particles.size() > 0) diameter_ = 2 * frame.particles.radius.front();
-    if (!loosening_.has_reference()) return loosening_.rest(frame);
+    if (!loosening_.has_reference()) {
+      region_at_rest_.add(frame, diameter_);
+      return loosening_.rest(frame);
+    }
     if (frame.step < flow_from_ || frame.particles.size() == 0) return;
     for (Measurement* part : {correlation_.get(), diffusion_.get()}) part->add(frame);
     region_.add(frame, diameter_);
@@ -192,6 +196,7 @@ class SpotCalibration : public Measurement {
     o.grain_diffusion = widened(number_of(tables, "diffusion", "diffusion_length_y"), error_of_mean(diffusions_));
     if (loosening_.frames() > 0) o.number_density = mean_by_time_groups(region_.density());
     o.speed = loosening_.result().speed;
+    o.speed.error = std::hypot(o.speed.error, o.speed.value * relative_drop());
     o.outflow = counts_.mean_rate();
     for (const Table& t : tables)
       if (t.name == "diffusion")
@@ -199,6 +204,14 @@ class SpotCalibration : public Measurement {
           if (std::isfinite(time) && time >= number_option(options_, "fit_from")) o.times.push_back(time);
     o.rise = length_option(options_, "rise", default_rise, diameter_);
     return o;
+  }
+
+  // A spot carries more where grains are denser, and those that come from above are denser or looser than the spots
+  // around them make them. What is missing therefore tells the speed to the part of the grains that is missing.
+  double relative_drop() const {
+    const Loosening::Result loosened = loosening_.result();
+    if (region_at_rest_.density().empty()) return loosened.drop.value / loosened.at_rest.value;
+    return 1 - mean_by_time_groups(region_.density()).value / region_at_rest_.density().front();
   }
 
   Table parameter_table(const SpotObservations& o, const Estimate& amplitude) const {
@@ -264,7 +277,7 @@ class SpotCalibration : public Measurement {
   std::int64_t flow_from_;
   std::size_t lags_, outputs_ = 0;
   std::unique_ptr<Measurement> widths_, correlation_, diffusion_;
-  BoxFlow region_;
+  BoxFlow region_, region_at_rest_;
   Loosening loosening_;
   PlaneCounts counts_;
   std::unique_ptr<Measurement> window_correlation_, window_diffusion_;
