@@ -10,7 +10,7 @@ namespace grainvdb {
 
 /// One value per row; NaN where there is none.
 struct TableColumn {
-  std::string name;
+  std::string name;  ///< letters, digits and underscores, as in what follows: programs take it for a variable's name
   Dimension dimension{};
   std::string description;  ///< one line
   std::vector<double> values{};

@@ -6,13 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from .arrays import Array
+
 
 @dataclasses.dataclass(frozen=True)
 class Collapse:
     """Points (x, y) in bins of x that hold equally many."""
 
-    centres: np.ndarray  # of the bins: median of x
-    means: np.ndarray  # of y in each bin
+    centres: Array  # of the bins: median of x
+    means: Array  # of y in each bin
     count: int  # of points
     spread: float  # standard deviation of y
     scatter: float  # of y about the mean of its bin, rms, for as many degrees of freedom as the bins leave
@@ -28,7 +30,7 @@ class Collapse:
         return 1 - self.share**2
 
 
-def collapse(x: np.ndarray, y: np.ndarray, bins: int = 25) -> Collapse:
+def collapse(x: Array, y: Array, bins: int = 25) -> Collapse:
     """Of the points where both are finite. Raises ValueError where there are fewer than two a bin."""
     x, y = np.ravel(x).astype(float), np.ravel(y).astype(float)
     both = np.isfinite(x) & np.isfinite(y)
@@ -47,10 +49,10 @@ def collapse(x: np.ndarray, y: np.ndarray, bins: int = 25) -> Collapse:
 class Curve:
     """A binned curve of one run: the columns of a table of the measurement `collapse`."""
 
-    centres: np.ndarray  # of the bins
-    means: np.ndarray
-    spreads: np.ndarray  # standard deviations; NaN in bins of one point
-    points: np.ndarray  # how many
+    centres: Array  # of the bins
+    means: Array
+    spreads: Array  # standard deviations; NaN in bins of one point
+    points: Array  # how many
 
 
 def collapse_of_runs(curves: Sequence[Curve]) -> Collapse:

@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from . import hdf
+from .arrays import Array
 
 if TYPE_CHECKING:
     import xarray
@@ -66,17 +67,17 @@ class Fields:
     def __len__(self) -> int:
         return len(self.names)
 
-    def axis(self, name: str) -> np.ndarray:
+    def axis(self, name: str) -> Array:
         """The voxel centres along x, y or z [length]."""
         return self._file[name][...]
 
     @property
-    def times(self) -> np.ndarray:
+    def times(self) -> Array:
         """Mean time of the frames of each output time."""
         return self._file["time"][...]
 
     @property
-    def frame_counts(self) -> np.ndarray:
+    def frame_counts(self) -> Array:
         """Frames in the mean of each output time."""
         return self._file["frame_count"][...]
 
@@ -101,7 +102,7 @@ class Fields:
         """The formula with the tag of its source."""
         return hdf.attribute(self._dataset(name), "equation")
 
-    def values(self, name: str, time: int | None = None) -> np.ndarray:
+    def values(self, name: str, time: int | None = None) -> Array:
         """Of shape (z, y, x) and, for vectors and tensors, the component last; NaN where the field is undefined.
 
         With several output times they come first, unless one is named by its number. Raises KeyError for a field that
@@ -145,7 +146,7 @@ class Fields:
         names = hdf.text(attributes["flag_meanings"]).split()
         return [Reason(int(f), n, m) for f, n, m in zip(attributes["flag_masks"], names, meanings)]
 
-    def mask(self, time: int | None = None) -> np.ndarray:
+    def mask(self, time: int | None = None) -> Array:
         """The flags of every voxel, those of several reasons added up; shape as `values`."""
         if "mask" not in self._data:
             return np.zeros(self.values(self.names[0], time).shape[:3], np.uint32)

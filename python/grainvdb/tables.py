@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 
 from . import hdf
+from .arrays import Array
 
 if TYPE_CHECKING:
     import pandas
@@ -37,7 +38,7 @@ class Table:
         #: Names of the columns; the first is what the others are drawn against.
         self.columns: list[str] = _order(group)
 
-    def __getitem__(self, column: str) -> np.ndarray:
+    def __getitem__(self, column: str) -> Array:
         return self._column(column)[...]
 
     def unit(self, column: str) -> str:

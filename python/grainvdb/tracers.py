@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 
 from . import hdf
+from .arrays import Array
 
 if TYPE_CHECKING:
     import pandas
@@ -38,11 +39,11 @@ class Tracers:
         self.close()
 
     @property
-    def ids(self) -> np.ndarray:
+    def ids(self) -> Array:
         return self._group["id"][...]
 
     @property
-    def times(self) -> np.ndarray:
+    def times(self) -> Array:
         return self._group["position/time"][...]
 
     @property
@@ -61,11 +62,11 @@ class Tracers:
     def unit(self, name: str) -> str:
         return hdf.attribute(self._values(name), "units", "1")
 
-    def values(self, name: str) -> np.ndarray:
+    def values(self, name: str) -> Array:
         """Of shape (sample, tracer) and, for vectors and tensors, the component last; NaN where undefined."""
         return self._values(name)[...]
 
-    def positions(self, unwrapped: bool = True) -> np.ndarray:
+    def positions(self, unwrapped: bool = True) -> Array:
         """Of shape (sample, tracer, 3) [length]; unwrapped across periodic sides unless that is not wanted."""
         position = self._values("position")[...]
         if not unwrapped:
@@ -74,7 +75,7 @@ class Tracers:
         return position + self._values("image")[...] @ edges
 
     @property
-    def stop(self) -> np.ndarray:
+    def stop(self) -> Array:
         """Why a tracer stands still, as a code of `stop_names`; of shape (sample, tracer)."""
         return self._values("stop")[...]
 
@@ -84,7 +85,7 @@ class Tracers:
         return dict(zip((int(v) for v in attributes["flag_values"]), hdf.text(attributes["flag_meanings"]).split()))
 
     @property
-    def moving(self) -> np.ndarray:
+    def moving(self) -> Array:
         """Where a sample is one of a tracer that still moves, of shape (sample, tracer)."""
         return self.stop == 0
 
@@ -94,7 +95,7 @@ class Tracers:
 
         position = self.positions()
         samples, count = position.shape[:2]
-        columns: dict[str, np.ndarray] = {"id": np.tile(self.ids, samples), "time": np.repeat(self.times, count)}
+        columns: dict[str, Array] = {"id": np.tile(self.ids, samples), "time": np.repeat(self.times, count)}
         for k, axis in enumerate("xyz"):
             columns[axis] = position[:, :, k].ravel()
         for name in self.names:

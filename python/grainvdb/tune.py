@@ -64,7 +64,7 @@ def panel(rows: list[Row], field: str, colours: dict[str, object], ax: Axes) -> 
 def draw(rows: list[Row], most_panels: int = 12) -> matplotlib.figure.Figure:
     """All fields, those with a tolerance first."""
     order = {row["field"]: row["tolerance"] == "" for row in rows}
-    fields = sorted(order, key=order.get)[:most_panels]
+    fields = sorted(order, key=lambda field: order[field])[:most_panels]
     knobs = list(dict.fromkeys(knob(row) for row in rows))  # the current setting's comes first
     palette = matplotlib.colormaps["tab10"]
     colours = {name: palette(k % 10) for k, name in enumerate(knobs)}

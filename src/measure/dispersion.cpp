@@ -9,12 +9,6 @@
 namespace grainvdb {
 namespace {
 
-double largest_magnitude(const std::vector<double>& values) {
-  double most = 0;
-  for (const double v : values) most = std::max(most, std::abs(v));
-  return most;
-}
-
 /// Slope of the least-squares line; through the origin for a single point.
 double slope(const std::vector<double>& x, const std::vector<double>& y) {
   if (x.empty()) return nan;
@@ -48,7 +42,7 @@ void Dispersion::add(const Frame& frame, const MeanMotion& motion) {
   if (!follows_) begin(frame);
   last_time_ = frame.time;
   has_speeds_ = !frame.particles.velocity[0].empty();
-  for (std::size_t a = 0; a < 3; ++a) last_speeds_[a] = largest_magnitude(frame.particles.velocity[a]);
+  last_speeds_ = largest_speeds(frame);
 }
 
 void Dispersion::begin(const Frame& frame) {
@@ -71,11 +65,26 @@ bool Dispersion::is_too_long(const Frame& frame) const {
   const auto& velocity = frame.particles.velocity;
   if (!frame.time || !last_time_ || velocity[0].empty() || !has_speeds_) return false;
   const double dt = std::abs(*frame.time - *last_time_);
+  const Vec3 speeds = largest_speeds(frame);
   for (std::size_t a = 0; a < 3; ++a)
     if (frame.box.periodic[a] &&
-        dt * std::max(last_speeds_[a], largest_magnitude(velocity[a])) > 0.5 * frame.box.length(static_cast<int>(a)))
+        dt * std::max(last_speeds_[a], speeds[a]) > 0.5 * frame.box.length(static_cast<int>(a)))
       return true;
   return false;
+}
+
+Vec3 Dispersion::largest_speeds(const Frame& frame) const {
+  const Particles& now = frame.particles;
+  Vec3 most{};
+  if (now.velocity[0].empty()) return most;
+  std::size_t k = 0;
+  for (const std::int64_t id : id_) {
+    while (k < now.size() && now.id[k] < id) ++k;
+    if (k == now.size()) break;
+    if (now.id[k] != id) continue;
+    for (std::size_t a = 0; a < 3; ++a) most[a] = std::max(most[a], std::abs(now.velocity[a][k]));
+  }
+  return most;
 }
 
 void Dispersion::take_step(const Frame& frame) {

@@ -26,8 +26,9 @@ class Dispersion {
   /// Windows have `lags` steps, then the next begins; 0: one window of all frames.
   Dispersion(const CountedRegion& region, std::size_t lags) : region_(region), lags_(lags) {}
 
-  /// The next frame. Where it has velocities and times, a step along a periodic axis that velocity × time says may be
-  /// longer than half the box is refused, for its nearest image may be another: the window ends before it.
+  /// The next frame. Where it has velocities and times, a step along a periodic axis that velocity × time of a grain
+  /// that is followed says may be longer than half the box is refused, for its nearest image may be another: the window
+  /// ends before it.
   void add(const Frame& frame, const MeanMotion& motion);
 
   std::size_t lags() const { return sums_.size(); }
@@ -56,6 +57,7 @@ class Dispersion {
   void take_step(const Frame& frame);
   void record(const Frame& frame, const MeanMotion& motion);
   bool is_too_long(const Frame& frame) const;
+  Vec3 largest_speeds(const Frame& frame) const;  ///< along each axis, of the grains that are followed
   double variance(std::size_t k, std::size_t axis, std::size_t without) const;
   double half_slope(std::size_t axis, Against against, double from, std::size_t without) const;
 

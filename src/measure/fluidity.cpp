@@ -61,6 +61,8 @@ class FluidityMeasurement : public Measurement {
     const FluidityLawFit fit = fit_samples(samples, table);
     add_rows(samples, fit.law, table);
     add_numbers(fit, table);
+    if (fit.fit.fitted() && !fit.fit.doubt.empty())
+      table.remarks.push_back("The fit is doubtful: " + fit.fit.doubt + '.');
     add_deviation(samples, table);
     table.remarks.push_back(error_remark(samples_->times(), "output time"));
     table.remarks.push_back(

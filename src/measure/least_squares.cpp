@@ -114,6 +114,14 @@ void set_errors(const FitProblem& problem, const VectorXd& singular, const Matri
   }
 }
 
+void doubt_misfit(const FitProblem& problem, Fit& fit) {
+  const auto freedom = static_cast<double>(fit.freedom);
+  if (problem.error.empty() || !(fit.chi_square > freedom + 4 * std::sqrt(2 * freedom))) return;
+  fit.doubt = "chi^2 is " + text_of(fit.chi_square) + " for " + std::to_string(fit.freedom) +
+              " degrees of freedom: the law does not describe the values within their errors, or these are not "
+              "independent, and the errors of the parameters are too small";
+}
+
 void forget_parameters(Fit& fit) {
   for (std::vector<double>* values : {&fit.parameters, &fit.errors, &fit.covariance})
     std::fill(values->begin(), values->end(), nan);
@@ -168,7 +176,11 @@ Fit least_squares(const FitProblem& problem) {
   test_rank(problem, svd.singularValues(), svd.matrixV(), fit);
   for (std::size_t j = 0; j < n; ++j) fit.parameters[j] = scaled[static_cast<Index>(j)] * problem.parameters[j].scale;
   if (fit.fitted()) set_errors(problem, svd.singularValues(), svd.matrixV(), fit);
-  if (!fit.fitted()) forget_parameters(fit);
+  if (!fit.fitted()) {
+    forget_parameters(fit);
+  } else {
+    doubt_misfit(problem, fit);
+  }
   return fit;
 }
 

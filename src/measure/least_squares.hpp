@@ -29,6 +29,7 @@ struct FitProblem {
 
 struct Fit {
   std::string refusal;             ///< why there is no fit, in a sentence; empty where there is one
+  std::string doubt;               ///< why a fit is hardly to be trusted, in a sentence; empty where nothing says so
   std::vector<double> parameters;  ///< NaN where the fit was refused
   std::vector<double> errors;      ///< standard errors; NaN where the fit was refused
   std::vector<double> covariance;  ///< row by row; NaN where the fit was refused
@@ -48,8 +49,10 @@ struct Fit {
 /// condition number, and the rank counts those above the largest over condition_limit.
 ///
 /// Refused, with the reason in words: too few observations; no convergence; a rank below the number of parameters; a
-/// standard error above the scale of its parameter, which is then not known even to its order of magnitude. Throws
-/// std::invalid_argument where sizes do not agree, or a number is not finite or not positive where it must be.
+/// standard error above the scale of its parameter, which is then not known even to its order of magnitude. Doubted is
+/// a fit to given errors whose χ² lies four standard deviations √(2(n-m)) above its mean n-m: the law, or the
+/// independence of the errors, fails, and the errors of the parameters do not tell. Throws std::invalid_argument where
+/// sizes do not agree, or a number is not finite or not positive where it must be.
 Fit least_squares(const FitProblem& problem);
 
 }  // namespace grainvdb

@@ -156,13 +156,17 @@ class RheologyMeasurement : public Measurement {
     return data;
   }
 
-  static void add_fit_quality(const std::string& name, const Fit& fit, Table& table) {
+  static void add_fit_quality(const std::string& name, const std::string& law, const Fit& fit, Table& table) {
     table.numbers.push_back(
-        {.name = name + "_condition", .value = fit.condition, .description = "condition number of the fit of " + name});
+        {.name = name + "_condition", .value = fit.condition, .description = "condition number of the fit of " + law});
     table.numbers.push_back({.name = name + "_reduced_chi_square",
                              .value = fit.reduced_chi_square(),
-                             .description = "chi^2 per degree of freedom of the fit of " + name});
-    if (!fit.fitted()) table.remarks.push_back("A fit of " + name + " is refused: " + fit.refusal + '.');
+                             .description = "chi^2 per degree of freedom of the fit of " + law});
+    if (!fit.fitted()) {
+      table.remarks.push_back("A fit of " + law + " is refused: " + fit.refusal + '.');
+    } else if (!fit.doubt.empty()) {
+      table.remarks.push_back("The fit of " + law + " is doubtful: " + fit.doubt + '.');
+    }
   }
 
   /// The soft law where p* is known and the data show what it does, else the rigid one.
@@ -186,7 +190,7 @@ class RheologyMeasurement : public Measurement {
     table.numbers.push_back({"I_0", law.i_0, error.i_0, dimension::none, "I at which mu is half-way"});
     if (std::isfinite(found.law.p_0))
       table.numbers.push_back({"p_0", found.law.p_0, found.error.p_0, dimension::none, "p* at which mu vanishes"});
-    add_fit_quality("mu(I)", found.fit, table);
+    add_fit_quality("mu_fit", "mu(I)", found.fit, table);
     return found;
   }
 
@@ -197,7 +201,7 @@ class RheologyMeasurement : public Measurement {
     table.numbers.push_back({"I_c", i_c, found.error.i_c, dimension::none, "scale of I in nu(I)"});
     if (std::isfinite(p_c))
       table.numbers.push_back({"p_c", p_c, found.error.p_c, dimension::none, "scale of p* in nu(p*)"});
-    add_fit_quality("nu(I)", found.fit, table);
+    add_fit_quality("nu_fit", "nu(I)", found.fit, table);
     return found;
   }
 

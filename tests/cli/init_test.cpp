@@ -132,7 +132,8 @@ TEST(Init, TakesContactsWithWalls) {
   words.insert(words.end(), {"-o", "unknown.yaml"});
   const CommandResult unknown = run_command(words, folder.path());
   ASSERT_EQ(unknown.exit_code, 0) << unknown.err;
-  EXPECT_THAT(unknown.out, HasSubstr("see input.wall_contacts there, or give --wall-contact-compute"));
+  EXPECT_THAT(unknown.out,
+              HasSubstr("see input.wall_contacts there; for those of LIGGGHTS\n--wall-contact-compute names them"));
   EXPECT_THAT(read_file(folder / "unknown.yaml"),
               AllOf(HasSubstr("\n  #   c_wl[1] c_wl[2]"), HasSubstr("\n  # wall_contacts:\n  #   files: \"")));
   EXPECT_EQ(run_command({"validate", "unknown.yaml"}, folder.path()).exit_code, 0);

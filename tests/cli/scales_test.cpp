@@ -50,7 +50,7 @@ TEST(Scales, HaveTracersOfTheirOwn) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (const std::string voxel : {"0.25", "0.5"}) {
     const std::string histories = "all/c1.5_h" + voxel;
-    EXPECT_THAT(folder.names_in(histories), ElementsAre("tracers.h5", "tracers.xmf2"));
+    EXPECT_THAT(folder.names_in(histories), ElementsAre("run.json", "tracers.h5", "tracers.xmf2"));
     const CommandResult alone =
         run_command({"trace", "p.yaml", "--output", "alone" + voxel, "--set", "lattice.voxel=" + voxel}, folder.path());
     ASSERT_EQ(alone.exit_code, 0) << alone.err;

@@ -127,6 +127,28 @@ TEST(Dispersion, RefusesStepsThatMayBeLongerThanHalfTheBox) {
   EXPECT_EQ(d.grains(1), 50);
 }
 
+// Grains that have fallen out of a silo are fast; those within the box are followed all the same.
+TEST(Dispersion, GrainsThatAreNotFollowedMayBeFast) {
+  Walk walk(200, 0, {}, 8);
+  const double floor = 5;
+  Dispersion d(CountedRegion({{"lo", std::vector<double>{0, 0, floor}}, {"hi", std::vector<double>{6, 4, 20}}}), 0);
+  std::size_t followed = 0;
+  for (int frame = 0; frame < 3; ++frame) {
+    Frame f = walk.next();
+    for (auto& column : f.particles.velocity) column.assign(f.particles.size(), 0.1);
+    followed = 0;
+    for (std::size_t i = 0; i < f.particles.size(); ++i) {
+      const bool fallen = f.particles.position[2][i] < floor;
+      if (fallen) f.particles.velocity[1][i] = 4.1;
+      followed += fallen ? 0 : 1;
+    }
+    d.add(f, about_mean);
+  }
+  EXPECT_EQ(d.refused_steps(), 0U);
+  EXPECT_EQ(d.grains(1), static_cast<double>(followed));
+  EXPECT_LT(followed, 200U);
+}
+
 TEST(Dispersion, IsUndefinedWithoutSteps) {
   Dispersion d({}, 0);
   d.add(Walk(5, 0.1, {}, 1).next(), about_mean);

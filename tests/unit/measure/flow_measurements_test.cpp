@@ -119,6 +119,9 @@ TEST(FluidityMeasurement, ErrorsAreThoseOverOutputTimes) {
     EXPECT_NEAR(column_of(table, "gd_over_dv_error")[n], 0.01 * column_of(table, "gd_over_dv")[n], 1e-5);
 }
 
+// Octave makes variables of what a file names, and others where these are no names.
+constexpr const char* variable_name = "[A-Za-z_][A-Za-z0-9_]*";
+
 TEST(RheologyMeasurement, RecoversItsLaws) {
   const MeasurementInfo info = rheology_measurements().front();
   const FrictionLaw mu;
@@ -151,6 +154,8 @@ TEST(RheologyMeasurement, RecoversItsLaws) {
     EXPECT_TRUE(std::isnan(column_of(table, "p_star")[n]));
   }
   EXPECT_THAT(table.remarks, ::testing::Contains(HasSubstr("Kinetic theory is not compared")));
+  for (const TableColumn& column : table.columns) EXPECT_THAT(column.name, ::testing::MatchesRegex(variable_name));
+  for (const Quantity& number : table.numbers) EXPECT_THAT(number.name, ::testing::MatchesRegex(variable_name));
 }
 
 TEST(RheologyMeasurement, RefusesSlowFlowAlone) {

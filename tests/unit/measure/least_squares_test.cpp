@@ -75,6 +75,24 @@ TEST(LeastSquares, UnknownErrorsComeFromTheResiduals) {
   EXPECT_NEAR(fit.condition, std::sqrt(1.5), 1e-14);
 }
 
+// A parabola through eleven points is no line: of y = x² on [-1, 1] the line leaves x² - 2/5, whose squares sum to 1.4,
+// so that errors of 0.1 make χ² 137 where 9 ± 4.2 is to be expected, and errors of 0.4 make it 8.6.
+TEST(LeastSquares, DoubtsALawThatDoesNotDescribeTheValues) {
+  std::vector<double> x, y;
+  for (int k = -5; k <= 5; ++k) {
+    x.push_back(0.2 * k);
+    y.push_back(0.04 * k * k);
+  }
+  const Fit misfit = least_squares(line(x, y, std::vector<double>(x.size(), 0.1)));
+  ASSERT_TRUE(misfit.fitted()) << misfit.refusal;
+  double squares = 0;
+  for (const double v : y) squares += (v - 0.4) * (v - 0.4);
+  EXPECT_NEAR(misfit.chi_square, squares / 0.01, 1e-9);
+  EXPECT_THAT(misfit.doubt, HasSubstr("for 9 degrees of freedom"));
+  EXPECT_EQ(least_squares(line(x, y, std::vector<double>(x.size(), 0.4))).doubt, "");
+  EXPECT_EQ(least_squares(line(x, y)).doubt, "");  // the residuals are all that is known of the errors
+}
+
 TEST(LeastSquares, NonlinearParametersAreFoundToRounding) {
   const Fit fit = least_squares(decay(20, 3.7, 1.9));
   ASSERT_TRUE(fit.fitted()) << fit.refusal;
