@@ -22,9 +22,9 @@
 #include "cli/progress_line.hpp"
 #include "cli/report.hpp"
 #include "cli/run_record.hpp"
+#include "cli/write_tables.hpp"
 #include "grainvdb/follow.hpp"
 #include "grainvdb/scales.hpp"
-#include "grainvdb/table_sink.hpp"
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/number.hpp"
 
@@ -91,16 +91,6 @@ ScaleRun make_run(Pipeline pipeline, const std::string& folder) {
     run.tracer_sinks = make_sinks<TracerSink>(pipeline.trace->formats, tracer_sink_registry(), folder);
   run.pipeline = std::move(pipeline);
   return run;
-}
-
-void write_tables(RunReport& report, const std::string& folder) {
-  if (report.tables.empty()) return;
-  for (const TableSinkInfo& format : table_sink_registry()) {
-    const auto sink = format.make(folder);
-    sink->write(report.tables, report.tables_from);
-    const std::vector<std::string> files = sink->files();
-    report.files.insert(report.files.end(), files.begin(), files.end());
-  }
 }
 
 std::vector<std::unique_ptr<ProgressView>> progress_views(const RunOptions& options) {

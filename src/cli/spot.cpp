@@ -5,6 +5,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/output_folder.hpp"
 #include "cli/progress_line.hpp"
+#include "cli/spot_commands.hpp"
 #include "spot/run_spot.hpp"
 
 namespace grainvdb::cli {
@@ -68,10 +69,13 @@ void add_run_subcommand(CLI::App& spot) {
 }  // namespace
 
 void add_spot(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("spot", "Make snapshots with the spot model");
+  CLI::App* command = app.add_subcommand("spot", "Make snapshots with the spot model, and calibrate it");
   command->require_subcommand(1);
-  command->footer("Examples:\n  grainvdb spot run pipelines/spot_silo.yaml --output spot");
+  command->footer(
+      "Examples:\n  grainvdb spot run pipelines/spot_silo.yaml --output spot\n"
+      "  grainvdb spot calibrate pipelines/spot_calibrate.yaml --output calibrated");
   add_run_subcommand(*command);
+  add_spot_calibrate(*command);
 }
 
 }  // namespace grainvdb::cli

@@ -69,6 +69,8 @@ Columns3 fluctuations(const MeanMotion& motion, const Columns3& position, const 
   Columns3 result = value;
   if (value[0].empty()) return result;
   switch (motion.kind) {
+    case MeanMotion::Kind::none:
+      break;
     case MeanMotion::Kind::mean:
       take_off_mean(result);
       break;
@@ -86,8 +88,8 @@ std::vector<OptionInfo> mean_motion_options() {
   return {{.name = "about",
            .default_value = std::string("linear"),
            .help = "the mean motion that is taken off in each frame: the mean of the counted grains, the linear flow "
-                   "u0 + L x fitted to them, or the mean of layers across an axis",
-           .choices = {"mean", "linear", "layers"}},
+                   "u0 + L x fitted to them, the mean of layers across an axis, or none",
+           .choices = {"mean", "linear", "layers", "none"}},
           {.name = "axis",
            .default_value = std::string("z"),
            .help = "the axis that layers lie across",
@@ -101,6 +103,7 @@ std::vector<OptionInfo> mean_motion_options() {
 MeanMotion mean_motion(const OptionValues& options, double diameter) {
   MeanMotion motion;
   const auto& about = std::get<std::string>(options.at("about"));
+  if (about == "none") motion.kind = MeanMotion::Kind::none;
   if (about == "linear") motion.kind = MeanMotion::Kind::linear;
   if (about == "layers") motion.kind = MeanMotion::Kind::layers;
   motion.axis = static_cast<std::size_t>(std::get<std::string>(options.at("axis"))[0] - 'x');

@@ -8,10 +8,11 @@
 namespace grainvdb {
 
 /// The mean motion that is taken off, the same for velocities and displacements:
-/// mean: that of all grains; linear: the least-squares fit u₀ + L x to all, as in the boxes of the talks; layers: the
-/// mean of each layer of a thickness [length] across an axis.
+/// none: nothing, where there is no mean motion by symmetry; mean: that of all grains; linear: the least-squares fit
+/// u₀ + L x to all, as in the boxes of the talks; layers: the mean of each layer of a thickness [length] across an
+/// axis.
 struct MeanMotion {
-  enum class Kind { mean, linear, layers };
+  enum class Kind { none, mean, linear, layers };
   Kind kind = Kind::mean;
   std::size_t axis = 2;
   double thickness = 0;

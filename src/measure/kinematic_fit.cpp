@@ -9,6 +9,7 @@
 #include "grainvdb/kinematic.hpp"
 #include "grainvdb/run.hpp"
 #include "measure/drainage_fit.hpp"
+#include "measure/jackknife_error.hpp"
 #include "measure/option_values.hpp"
 #include "measure/plasticity.hpp"
 #include "measure/voxel_values.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 constexpr Dimension discharge_dimension{0, 2, -1};
 constexpr Dimension area{0, 2, 0};
+constexpr std::size_t fewest_times = 3;  ///< whose scatter says something
 
 int axis(const OptionValues& options, const char* name) {
   return std::get<std::string>(options.at(name))[0] - 'x';
@@ -47,40 +49,84 @@ class KinematicMeasurement : public Measurement {
         origin_(origin_of(setting.options)) {}
 
   void take(const OutputFields& fields) override {
+    columns_.emplace_back();
     const auto component = static_cast<std::size_t>(1 + up_);
     for_each_value(fields, {"phi", "velocity"}, [&](const Coord& c, std::span<const double> v) {
       const double x = lattice_.centre(across_, c[across_]) - slot_;
       const double z = lattice_.centre(up_, c[up_]) - bottom_;
       if (!(v[0] >= least_phi_) || std::isnan(v[component])) return;
       if (z < lowest_ || z > highest_ || std::abs(x) > half_width_) return;
-      Column& column = columns_[{c[up_], c[across_]}];
+      Column& column = columns_.back()[{c[up_], c[across_]}];
       column.flux -= v[0] * v[component];
       column.phi += v[0];
       ++column.voxels;
     });
-    ++outputs_;
   }
 
   std::vector<Table> tables() override {
-    const std::vector<DrainagePoint> points = mean_flow();
-    return {field_table(points), width_table(points)};
+    std::vector<Table> tables = tables_of(mean_flow());
+    widen_errors(tables);
+    return tables;
   }
 
  private:
+  using Place = std::pair<std::int32_t, std::int32_t>;  ///< up, across
   struct Column {
     double flux = 0, phi = 0;
     std::size_t voxels = 0;
+
+    void add(const Column& other) {
+      flux += other.flux;
+      phi += other.phi;
+      voxels += other.voxels;
+    }
   };
 
   // Output times tell the same place again, so that a point is no more independent for their number.
-  std::vector<DrainagePoint> mean_flow() const {
+  std::vector<DrainagePoint> mean_flow(std::optional<std::size_t> without = {}) const {
+    std::map<Place, Column> sums;
+    std::size_t outputs = 0;
+    for (std::size_t k = 0; k < columns_.size(); ++k) {
+      if (k == without) continue;
+      ++outputs;
+      for (const auto& [at, column] : columns_[k]) sums[at].add(column);
+    }
     std::vector<DrainagePoint> points;
-    for (const auto& [at, column] : columns_) {
-      const double deep = static_cast<double>(column.voxels) / static_cast<double>(outputs_);
+    for (const auto& [at, column] : sums) {
+      const double deep = static_cast<double>(column.voxels) / static_cast<double>(outputs);
       points.push_back({lattice_.centre(across_, at.second) - slot_, lattice_.centre(up_, at.first) - bottom_,
                         column.flux / column.phi, std::min(1.0, independence_ * std::max(1.0, deep))});
     }
     return points;
+  }
+
+  std::vector<Table> tables_of(const std::vector<DrainagePoint>& points) const {
+    return {field_table(points), width_table(points)};
+  }
+
+  // Voxels tell nothing of what all of them do for a time. What varies between output times does: the jackknife over
+  // them takes the place of an error that is smaller.
+  void widen_errors(std::vector<Table>& tables) const {
+    const std::size_t times = columns_.size();
+    if (times < fewest_times) return;
+    std::vector<std::vector<double>> without;  // [number of any table][time]
+    for (std::size_t k = 0; k < times; ++k) {
+      std::size_t n = 0;
+      for (const Table& table : tables_of(mean_flow(k)))
+        for (const Quantity& q : table.numbers) {
+          if (n == without.size()) without.emplace_back();
+          without[n++].push_back(q.value);
+        }
+    }
+    std::size_t n = 0;
+    for (Table& table : tables) {
+      for (Quantity& q : table.numbers) {
+        if (std::isfinite(q.error)) q.error = std::max(q.error, jackknife_error(without[n]));
+        ++n;
+      }
+      table.remarks.push_back("Errors are those of the fit or, where these are larger, of leaving out one of the " +
+                              std::to_string(times) + " output times at a time.");
+    }
   }
 
   Table field_table(const std::vector<DrainagePoint>& points) const {
@@ -142,8 +188,7 @@ class KinematicMeasurement : public Measurement {
   int up_, across_;
   double slot_, bottom_, lowest_, highest_, half_width_, least_phi_, independence_;
   Origin origin_;
-  std::map<std::pair<std::int32_t, std::int32_t>, Column> columns_;
-  std::size_t outputs_ = 0;
+  std::vector<std::map<Place, Column>> columns_;  ///< of each output time
 };
 
 OptionInfo length_option_info(const char* name, const char* help) {

@@ -13,5 +13,6 @@ std::vector<MeasurementInfo> rheology_measurements();
 std::vector<MeasurementInfo> stationarity_measurements();
 std::vector<MeasurementInfo> plasticity_measurements();
 std::vector<MeasurementInfo> structure_measurements();
+std::vector<MeasurementInfo> spot_measurements();
 
 }  // namespace grainvdb

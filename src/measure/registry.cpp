@@ -11,7 +11,7 @@ const std::vector<MeasurementInfo>& measurement_registry() {
     std::vector<MeasurementInfo> all;
     for (const auto family :
          {profile_measurements, plane_profile_measurements, fluidity_measurements, rheology_measurements,
-          stationarity_measurements, plasticity_measurements, structure_measurements})
+          stationarity_measurements, plasticity_measurements, structure_measurements, spot_measurements})
       for (MeasurementInfo& measurement : family()) all.push_back(std::move(measurement));
     return all;
   }();

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "base/nan.hpp"
+#include "grainvdb/spot_diffusion.hpp"
 #include "measure/least_squares.hpp"
 #include "measure/velocity_correlation.hpp"
 
@@ -33,8 +34,7 @@ SphereFit best_of_many(const std::vector<double>& r, const std::vector<double>& 
 }  // namespace
 
 double sphere_law(double r, double radius) {
-  const double q = r / radius;
-  return q >= 0 && q < 2 ? 1 - 0.75 * q + 0.0625 * q * q * q : 0;
+  return ball_overlap(r, radius);
 }
 
 SphereFit fit_sphere_law(const std::vector<double>& r, const std::vector<double>& c) {

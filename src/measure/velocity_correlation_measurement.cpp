@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -20,6 +22,14 @@ constexpr double default_from = 1;
 
 bool about_field(const OptionValues& options) {
   return std::get<std::string>(options.at("about")) == "field";
+}
+
+/// Whether each of the components counts.
+std::array<bool, 3> counted_components(const OptionValues& options) {
+  std::array<bool, 3> counted{};
+  for (const std::string& name : std::get<std::vector<std::string>>(options.at("components")))
+    counted[static_cast<std::size_t>(name[0] - 'x')] = true;
+  return counted;
 }
 
 /// C(r) of the bins that are fitted.
@@ -65,7 +75,11 @@ class VelocityCorrelationMeasurement : public Measurement {
       slabs_.emplace(region_.within(frame.box, frame.particles.position));
       correlation_.emplace(length_option(options_, "reach", velocity_reach, d), count_option(options_, "bins"));
     }
-    correlation_->add(frame.box, position, field_ ? velocity : fluctuations(motion_, position, velocity), *slabs_);
+    Columns3 rest = field_ ? velocity : fluctuations(motion_, position, velocity);
+    const std::array<bool, 3> counted = counted_components(options_);
+    for (std::size_t a = 0; a < 3; ++a)
+      if (!counted[a]) std::fill(rest[a].begin(), rest[a].end(), 0.0);
+    correlation_->add(frame.box, position, rest, *slabs_);
   }
 
   std::vector<Table> tables() override {
@@ -163,7 +177,11 @@ MeasurementInfo velocity_correlation_measurement() {
                               {.name = "fit_from",
                                .default_value = 0.0,
                                .help = "least distance that is fitted [length]; 0: one mean diameter",
-                               .minimum = 0}};
+                               .minimum = 0},
+                              {.name = "components",
+                               .default_value = std::vector<std::string>{"x", "y", "z"},
+                               .help = "of the velocity, which are correlated",
+                               .choices = {"x", "y", "z"}}};
   for (OptionInfo& option : mean_motion_options()) {
     if (option.name == "about") {
       option.help +=
@@ -174,7 +192,11 @@ MeasurementInfo velocity_correlation_measurement() {
     own.push_back(std::move(option));
   }
   info.options = CountedRegion::options(std::move(own));
-  info.conflict = CountedRegion::conflict;
+  info.conflict = [](const OptionValues& options) -> std::optional<OptionConflict> {
+    if (std::get<std::vector<std::string>>(options.at("components")).empty())
+      return OptionConflict{"components", "none", "at least one of x, y, z"};
+    return CountedRegion::conflict(options);
+  };
   info.needs = [](const OptionValues& options) {
     MeasurementNeeds needs{Column::radius | Column::velocity, {}};
     if (about_field(options)) needs.fields = {"velocity"};

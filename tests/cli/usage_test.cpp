@@ -87,6 +87,7 @@ TEST(Usage, TheManualPageHasEveryCommandAndOption) {
   const CommandResult result = grainvdb({"man"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.out, AllOf(StartsWith(".TH GRAINVDB 1"), HasSubstr(".SS grainvdb spot run\n"),
+                                HasSubstr(".SS grainvdb spot calibrate\n"),
                                 HasSubstr("\\fB\\-o,\\-\\-output\\fR \\fIDIR\\fR"), HasSubstr("Exit codes:")));
   for (const char* command :
        {"run", "measure", "info", "init", "validate", "stages", "measurements", "graph", "schema", "spot", "report"})
@@ -117,6 +118,8 @@ TEST(Usage, BashCompletesCommandsOptionsAndFiles) {
   EXPECT_EQ(completed("grainvdb run --th"), "--threads\n");
   EXPECT_EQ(completed("grainvdb run my"), "my pipeline.yaml\n");
   EXPECT_EQ(completed("grainvdb spot ru"), "run\n");
+  EXPECT_EQ(completed("grainvdb spot ca"), "calibrate\n");
+  EXPECT_EQ(completed("grainvdb spot calibrate --fr"), "--frames\n");
   EXPECT_EQ(completed("grainvdb spot run --qu"), "--quiet\n");
   EXPECT_EQ(completed("grainvdb run run --dt"), "\n");
 }

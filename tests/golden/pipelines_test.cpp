@@ -137,7 +137,8 @@ TEST_P(ShippedMeasurements, MakeTheirTables) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Pipelines, ShippedMeasurements,
-                         ::testing::Values("fluidity", "kinematic", "plasticity", "rheology", "spot_compare", "structure"),
+                         ::testing::Values("fluidity", "kinematic", "plasticity", "rheology", "spot_calibrate",
+                                           "spot_compare", "structure"),
                          [](const auto& param) { return std::string(param.param); });
 
 /// The numbers of the tables of a pipeline's measurements, by table and name.

@@ -141,6 +141,29 @@ TEST(KinematicFit, KeepsToTheWindowThatIsGiven) {
   EXPECT_NEAR(number(t, "b").value, 2.28, 1e-5);
 }
 
+// Three output times whose b differ, as those of blocks of a run do: the jackknife over them is the error of their mean.
+TEST(KinematicFit, TakesErrorsFromOutputTimes) {
+  const auto flow_of = [](double b) {
+    FieldScene s = draining();
+    const KinematicFlow flow{b, 1.7};
+    s.set("velocity", 3, [=](const Vec3& x, int k) { return k == 2 ? -flow.downward(x[0] - 4, x[2] + 2) : 0; });
+    return s;
+  };
+  const auto measurement = draining().make();
+  std::vector<double> b{2.0, 2.3, 2.45};
+  for (const double value : b) {
+    const FieldScene s = flow_of(value);
+    measurement->take(s.fields());
+  }
+  const std::vector<Table> tables = measurement->tables();
+  const double mean = 2.25, variance = (0.25 * 0.25 + 0.05 * 0.05 + 0.2 * 0.2) / 2;
+  for (const Table& t : tables) {
+    EXPECT_NEAR(number(t, "b").value, mean, 0.03);  // of the mean flow, not the mean of b
+    EXPECT_NEAR(number(t, "b").error, std::sqrt(variance / 3), 0.2 * std::sqrt(variance / 3));
+    EXPECT_EQ(t.remarks.size(), 1U);
+  }
+}
+
 TEST(KinematicFit, SaysWhyThereIsNone) {
   FieldScene s = draining();
   s.set("velocity", 3, [](const Vec3&, int) { return 0.0; });

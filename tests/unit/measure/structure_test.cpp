@@ -253,5 +253,20 @@ TEST(SurfaceAngle, IsRefusedWhereBothHorizontalAxesArePeriodic) {
   ASSERT_EQ(table.remarks.size(), 1U);
 }
 
+// Along x all grains move alike, along y each by itself.
+TEST(VelocityCorrelationMeasurement, CorrelatesTheComponentsAskedFor) {
+  std::vector<Frame> frames = random_frames(2);
+  for (Frame& f : frames) std::fill(f.particles.velocity[0].begin(), f.particles.velocity[0].end(), 7.0);
+  const auto at_two = [&](const std::vector<std::string>& components) {
+    const Table t =
+        measure("velocity_correlation", frames, {{"components", components}, {"about", std::string("none")}}).front();
+    return t.columns[1].values[10];
+  };
+  EXPECT_NEAR(at_two({"x"}), 1, 1e-12);
+  EXPECT_NEAR(at_two({"y"}), 0, 0.1);  // some thousand pairs: 3 %
+  EXPECT_THROW(measure("velocity_correlation", frames, {{"components", std::vector<std::string>{}}}),
+               std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace grainvdb::testing::structure_test

@@ -134,6 +134,7 @@ TEST(Fluctuations, HaveNothingOfTheMotionThatIsTakenOff) {
   };
   EXPECT_LT(largest(fluctuations({MeanMotion::Kind::linear}, s.position, u)), 1e-11);
   EXPECT_GT(largest(fluctuations({MeanMotion::Kind::mean}, s.position, u)), 1);
+  EXPECT_EQ(fluctuations({MeanMotion::Kind::none}, s.position, u), u);
   Columns3 layered = u;
   for (std::size_t i = 0; i < s.size(); ++i)
     for (auto& column : layered) column[i] = std::floor(s.position[2][i] / 1.5);

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <tbb/global_control.h>
+
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/open_input.hpp"
+#include "cli/output_folder.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/report.hpp"
+#include "cli/run_record.hpp"
+#include "cli/spot_commands.hpp"
+#include "cli/write_tables.hpp"
+#include "grainvdb/run.hpp"
+#include "spot/calibration.hpp"
+#include "spot/spot_file.hpp"
+#include "write/text_file.hpp"
+
+namespace grainvdb::cli {
+namespace {
+
+constexpr const char* spot_calibrate_footer = R"(Examples:
+  grainvdb spot calibrate pipelines/spot_calibrate.yaml --output calibrated
+  grainvdb spot run calibrated/spot.yaml --output spot
+  grainvdb spot calibrate my.yaml --frames 10: --set measure.spot_calibration.lags=8
+
+Measures what the section measure.spot_calibration of the pipeline file describes, prints the parameters of the spot
+model with their errors, and writes them with all that they come from as tables, and as DIR/spot.yaml, a file for
+'grainvdb spot run' whose packing is the first of the frames. docs/spot_calibration.md tells how they are found.)";
+
+struct SpotCalibrateOptions {
+  PipelineArguments pipeline;
+  std::string output = "calibrated";
+  std::size_t threads = 0;
+  bool quiet = false;
+};
+
+Pipeline calibration_alone(const SpotCalibrateOptions& options) {
+  Pipeline pipeline = load_pipeline(options.pipeline.file, options.pipeline.settings());
+  spot::check_calibration(pipeline);
+  pipeline.fields.clear();
+  pipeline.formats.clear();
+  pipeline.trace.reset();
+  std::erase_if(pipeline.measure, [](const auto& entry) { return entry.first != "spot_calibration"; });
+  return pipeline;
+}
+
+RunReport measured(const Pipeline& pipeline, const Plan& plan, FrameSource& source, bool quiet) {
+  watch_for_interrupts();
+  ProgressLine line(stderr);
+  return run_pipeline(pipeline, plan, source, {}, [&](const Progress& progress) {
+    check_for_interrupt();
+    if (!quiet) line.show(progress);
+  });
+}
+
+void print_parameters(const RunReport& report) {
+  RunReport shown = report;
+  std::erase_if(shown.tables, [](const Table& table) { return table.name != "spot_calibration"; });
+  std::cout << cli::describe(shown);
+}
+
+void calibrate(const SpotCalibrateOptions& options) {
+  std::optional<tbb::global_control> threads;
+  if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
+  const Pipeline pipeline = calibration_alone(options);
+  const Plan plan = make_plan(pipeline);
+  check_output_folder(options.output);
+  const auto source = open_input(pipeline, plan);
+  RunReport report = measured(pipeline, plan, *source, options.quiet);
+  write_tables(report, options.output);
+  write_run_record(report, options.output);
+  std::cerr << warnings(report);
+  if (!options.quiet) print_parameters(report);
+  const std::string file = (std::filesystem::path(options.output) / "spot.yaml").string();
+  write_text_file(file, spot::calibrated_spot_file(pipeline, report.tables.front(), *source));
+  spot::load_spot_run(file);  // whether it can be run
+  if (!options.quiet) std::cout << "wrote " << file << "\nrun it:\n  grainvdb spot run " << file << '\n';
+}
+
+}  // namespace
+
+void add_spot_calibrate(CLI::App& spot) {
+  CLI::App* command = spot.add_subcommand("calibrate", "Find the spot model's parameters from dumps of a silo");
+  const auto options = std::make_shared<SpotCalibrateOptions>();
+  add_pipeline_arguments(*command, options->pipeline);
+  command->add_option("-o,--output", options->output, "Folder for the tables and spot.yaml; made where there is none")
+      ->type_name("DIR")
+      ->capture_default_str();
+  add_frames_option(*command, options->pipeline);
+  command->add_option("--threads", options->threads, "Threads to use; all processors by default")
+      ->type_name("N")
+      ->check(CLI::Range(1, 4096));
+  command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors and warnings");
+  command->footer(spot_calibrate_footer);
+  command->callback([options] { calibrate(*options); });
+}
+
+}  // namespace grainvdb::cli

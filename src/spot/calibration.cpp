@@ -1,0 +1,203 @@
+#include "spot/calibration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "pipeline/number.hpp"
+
+namespace grainvdb::spot {
+namespace {
+
+constexpr const char* calibration_name = "spot_calibration";
+
+const OptionValues& options_of(const Pipeline& pipeline) {
+  return pipeline.measure.at(calibration_name);
+}
+
+double number(const Pipeline& pipeline, const char* name) {
+  return std::get<double>(options_of(pipeline).at(name));
+}
+
+const Quantity& parameter(const Table& calibration, const std::string& name) {
+  return *std::find_if(calibration.numbers.begin(), calibration.numbers.end(),
+                       [&](const Quantity& q) { return q.name == name; });
+}
+
+void check_parameters(const Pipeline& pipeline, const Table& calibration) {
+  std::string missing;
+  for (const char* name : {"radius", "step_side", "influence", "hop_rate", "insertion_rate"})
+    if (const double x = parameter(calibration, name).value; !std::isfinite(x) || !(x > 0))
+      missing += (missing.empty() ? "" : ", ") + std::string(name) + " (" + short_number(x) + ')';
+  if (missing.empty()) return;
+  std::string hint;
+  for (const std::string& remark : calibration.remarks) hint += (hint.empty() ? "" : " ") + remark;
+  if (hint.empty())
+    hint = "Compare lo, hi, flow_from and phi_at_rest of measure.spot_calibration with where and when the silo flows.";
+  throw InputError({pipeline.location("measure.spot_calibration"),
+                    "the frames do not tell every parameter of the spot model", missing, "numbers above 0", hint});
+}
+
+/// Of the packing: the grains of a frame that a spot file would take.
+struct Extent {
+  Vec3 lo{}, hi{};  ///< of the grains, not of their centres
+  std::size_t grains = 0;
+};
+
+Extent extent_of(const Frame& frame, const std::vector<int>& types, double bottom) {
+  Extent extent;
+  const Particles& p = frame.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    if (!types.empty() && std::find(types.begin(), types.end(), p.type[i]) == types.end()) continue;
+    if (p.position[2][i] < bottom) continue;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double lo = p.position[a][i] - p.radius[i], hi = p.position[a][i] + p.radius[i];
+      extent.lo[a] = extent.grains == 0 ? lo : std::min(extent.lo[a], lo);
+      extent.hi[a] = extent.grains == 0 ? hi : std::max(extent.hi[a], hi);
+    }
+    ++extent.grains;
+  }
+  return extent;
+}
+
+/// The ends of the container: walls where they are given, the period, or as far as there are grains, outwards to a
+/// thousandth.
+Box container_of(const Pipeline& pipeline, const Frame& frame, const Extent& grains) {
+  Box box = frame.box;
+  const auto walls = std::get<std::vector<double>>(options_of(pipeline).at("side_walls"));
+  for (std::size_t a = 0; a < 2; ++a) {
+    if (box.periodic[a]) continue;
+    box.lo[a] = std::floor(1e3 * grains.lo[a]) / 1e3;
+    box.hi[a] = std::ceil(1e3 * grains.hi[a]) / 1e3;
+  }
+  if (!walls.empty()) {
+    box.lo[0] = walls[0];
+    box.hi[0] = walls[1];
+    box.periodic[0] = false;
+  }
+  box.lo[2] = number(pipeline, "bottom");
+  box.hi[2] = std::ceil(1e3 * grains.hi[2]) / 1e3;
+  box.periodic[2] = false;
+  return box;
+}
+
+std::string list(const std::vector<std::string>& items) {
+  std::string text;
+  for (const std::string& item : items) text += (text.empty() ? "" : ", ") + item;
+  return '[' + text + ']';
+}
+
+std::string list(const Vec3& x) {
+  return list({print_number(x[0]), print_number(x[1]), print_number(x[2])});
+}
+
+// A quoted text of YAML.
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) result += (c == '"' || c == '\\' ? std::string("\\") : std::string()) + c;
+  return result + '"';
+}
+
+std::string packing_text(const Pipeline& pipeline, std::size_t frame) {
+  std::vector<std::string> files, types;
+  for (const std::string& file : pipeline.input.particles)
+    files.push_back(quoted(std::filesystem::absolute(file).lexically_normal().string()));
+  for (const int type : pipeline.select.types) types.push_back(std::to_string(type));
+  std::string text = "packing:\n  dump: " + list(files) + "\n  frame: " + std::to_string(frame) + '\n';
+  if (!types.empty()) text += "  types: " + list(types) + '\n';
+  if (pipeline.input.radius) text += "  radius: " + print_number(*pipeline.input.radius) + '\n';
+  return text;
+}
+
+std::string container_text(const Pipeline& pipeline, const Box& box) {
+  std::vector<std::string> periodic;
+  for (std::size_t a = 0; a < 3; ++a)
+    if (box.periodic[a]) periodic.emplace_back(1, "xyz"[a]);
+  std::string text = "\ncontainer:\n  lo: " + list(box.lo) + "\n  hi: " + list(box.hi) + '\n';
+  if (!periodic.empty()) text += "  periodic: " + list(periodic) + '\n';
+  return text + "  orifice:\n    shape: slot\n    width: " + print_number(number(pipeline, "slot_width")) +
+         "\n    centre: [" + print_number(number(pipeline, "slot")) + ", 0]\n";
+}
+
+/// "  name: 12.3   # +- 0.4, description"
+std::string line(const std::string& key, const Quantity& q) {
+  std::string text = "  " + key + ": " + print_number(std::stod(short_number(q.value))) + "  # ";
+  if (std::isfinite(q.error)) text += "+- " + short_number(q.error) + ", ";
+  return text + q.description + '\n';
+}
+
+std::string spots_text(const Table& calibration, double diameter) {
+  const Quantity& side = parameter(calibration, "step_side");
+  const std::string dx = short_number(side.value);
+  std::string text = "\nspots:\n" + line("radius", parameter(calibration, "radius")) +
+                     line("influence", parameter(calibration, "influence")) + "  step: [" + dx + ", " + dx + ", " +
+                     short_number(parameter(calibration, "step_up").value) + "]  # ";
+  if (std::isfinite(side.error)) text += "+- " + short_number(side.error) + " to the sides, ";
+  const Quantity &b = parameter(calibration, "b"), &volume = parameter(calibration, "volume");
+  text += "b = " + short_number(b.value) + (std::isfinite(b.error) ? " +- " + short_number(b.error) : "") + '\n' +
+          line("hop_rate", parameter(calibration, "hop_rate")) +
+          line("insertion_rate", parameter(calibration, "insertion_rate")) +
+          "  entry: spread\n  wall_distance: " + short_number(diameter) +
+          "  # one diameter; not measured\n  # V_s/V_p = " + short_number(volume.value);
+  if (std::isfinite(volume.error)) text += " +- " + short_number(volume.error);
+  return text + '\n';
+}
+
+std::string output_text(const std::vector<std::size_t>& frames, const FrameSource& source) {
+  const auto &first = source.frames()[frames.front()].time, &last = source.frames()[frames.back()].time;
+  const double steps = static_cast<double>(frames.size()) - 1;
+  const double interval = std::stod(short_number((*last - *first) / steps));
+  std::string text = "\noutput:\n  interval: " + print_number(interval) + "\n  end: " + print_number(steps * interval);
+  if (find_unit_system(source.units().name) != nullptr) text += "\n  units: " + source.units().name;
+  return text + "\n\nseed: 1\n";
+}
+
+}  // namespace
+
+void check_calibration(const Pipeline& pipeline) {
+  if (!pipeline.measure.contains(calibration_name))
+    throw ConfigError({Location{pipeline.file},
+                       "there is nothing to calibrate: the section 'measure.spot_calibration' is missing",
+                       {},
+                       "measure, with a section spot_calibration",
+                       "'grainvdb measurements spot_calibration' explains its options"});
+  if (!(number(pipeline, "slot_width") > 0))
+    throw ConfigError({pipeline.location("measure.spot_calibration.slot_width"),
+                       "the spot file needs the width of the slot: measure.spot_calibration.slot_width is 0",
+                       {},
+                       "a length above 0",
+                       {}});
+  if (pipeline.reduced)
+    throw ConfigError({pipeline.location("output.reduced"),
+                       "a spot file is in the units of its dumps",
+                       "reduced units",
+                       "a pipeline file without them",
+                       {}});
+  if (pipeline.select.ids)
+    throw ConfigError({pipeline.location("select.ids"),
+                       "a spot file chooses grains by their type and place, not by id",
+                       {},
+                       "select.types, select.region",
+                       {}});
+}
+
+std::string calibrated_spot_file(const Pipeline& pipeline, const Table& calibration, FrameSource& source) {
+  check_parameters(pipeline, calibration);
+  const std::vector<std::size_t> frames = select_frames(pipeline.frames, source.frames().size());
+  ColumnSet columns = Column::radius;
+  if (!pipeline.select.types.empty()) columns |= Column::type;
+  const Frame frame = source.read(frames.front(), columns);
+  const Extent grains = extent_of(frame, pipeline.select.types, number(pipeline, "bottom"));
+  if (grains.grains == 0)
+    throw InputError({{frame.file}, "no grain of this dump lies above the floor", {}, {}, "Compare bottom and select"});
+  const double diameter = 2 * frame.particles.radius.front();
+  return "# The spot model of " + pipeline.file + ", by grainvdb spot calibrate. Numbers in the units of the dumps.\n" +
+         "grainvdb: 1\n\n" + packing_text(pipeline, frames.front()) +
+         container_text(pipeline, container_of(pipeline, frame, grains)) + spots_text(calibration, diameter) +
+         "\nrelaxation:\n  every: 1\n  strength: 0.8\n" + output_text(frames, source);
+}
+
+}  // namespace grainvdb::spot
