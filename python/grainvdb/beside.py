@@ -5,16 +5,22 @@ import contextlib
 import difflib
 import html
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Callable
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 
 from . import compare, plots
+from .arrays import Array
 from .compare import Result, Results
-from .fields import AXES
-from .page import FIELDS_FIRST, PROFILES_FIRST, Page, html_table, number, ordered, panels, provenance, with_error, write
+from .fields import AXES, Fields
+from .page import (FIELDS_FIRST, PROFILES_FIRST, Draw, Page, html_table, number, ordered, panels, provenance,
+                   with_error, write)
 from .tables import Table
+from .tracers import Tracers
 
 
 def _legend(figure: plt.Figure) -> plt.Figure:
@@ -24,18 +30,24 @@ def _legend(figure: plt.Figure) -> plt.Figure:
 
 
 def _overview(page: Page, results: Results) -> None:
-    def row(what, tell):
+    def row(what: str, tell: Callable[[Result], str]) -> tuple[str, ...]:
         return (what, *(tell(result) for result in results.values()))
 
-    rows = [row("folder", lambda r: r.folder), row("made by", lambda r: f"grainvdb {r.provenance.get('version', '?')}"),
+    rows = [row("folder", lambda r: r.folder),
+            row("made by", lambda r: f"grainvdb {r.provenance.get('version', '?')}"),
             row("snapshots", lambda r: r.provenance.get("snapshots", "of a simulation")),
             row("frames", lambda r: str(len(r.provenance.get("steps", "").split())))]
-    if all(result.fields is not None for result in results.values()):
-        rows += [row("mean time", lambda r: f"{number(r.fields.times[-1])} {r.fields.unit('time')}"),
-                 row("voxels", lambda r: " × ".join(str(len(r.fields.axis(a))) for a in AXES) + f", edge {number(r.fields.voxel)} {r.fields.unit('x')}")]
+    if fields := compare.fields_of(results):
+        rows += [("mean time", *(f"{number(f.times[-1])} {f.unit('time')}" for f in fields.values())),
+                 ("voxels", *(_voxels(f) for f in fields.values()))]
     parts = [html_table(rows, ("", *results))]
     parts += [f"<p>{html.escape(text)}</p>" for text in compare.missing(results)]
     page.add("What is compared", *parts, *_differing_keys(results))
+
+
+def _voxels(fields: Fields) -> str:
+    counts = " × ".join(str(len(fields.axis(axis))) for axis in AXES)
+    return f"{counts}, edge {number(fields.voxel)} {fields.unit('x')}"
 
 
 def _differing_keys(results: Results) -> list[str]:
@@ -78,71 +90,72 @@ def _numbers(page: Page, tables: Mapping[str, Mapping[str, Table]]) -> None:
              "Errors are those that the measurements state, and most of these are lower bounds: see their pages.</p>", html_table(rows, head))
 
 
-def _profiles(page: Page, results: Results, axis: str) -> None:
+def _profiles(page: Page, results: Mapping[str, Fields], axis: str) -> None:
     names = ordered(compare.common_fields(results), PROFILES_FIRST)
-    fields = {label: result.fields for label, result in results.items()}
-    draw = [lambda ax, n=n: plots.scales(fields, n, axis, ax=ax) for n in names]
-    page.add("Profiles", page.picture("profiles", _legend(panels(draw, 3, (3.6, 3.2))), f"Means over each layer of voxels across {axis}, of vectors the magnitude."))
+    draw = [lambda ax, n=n: plots.scales(results, n, axis, ax=ax) for n in names]
+    page.add("Profiles", page.picture("profiles", _legend(panels(draw, 3, (3.6, 3.2))),
+                                      f"Means over each layer of voxels across {axis}, of vectors the magnitude."))
 
 
-def _velocity(page: Page, results: Results, along: str, cut: str) -> None:
+def _velocity(page: Page, results: Mapping[str, Fields], along: str, cut: str) -> None:
     across = next(axis for axis in AXES if axis not in (along, cut))
     at = compare.heights(results, "velocity", along, across)
     if at.size == 0:
         return
-    draw = [lambda ax, z=z: compare.profile_across(results, "velocity", z, along, across, ax) for z in at]
+    draw = [partial(compare.profile_across, results, "velocity", z, along, across) for z in at]
     page.add("Velocity profiles", page.picture("velocity_profiles", _legend(panels(draw, 3, (3.9, 2.9))),
                                                f"The component of the velocity along {along} against {across} at heights {along}, averaged over {cut}."))
 
 
-def _grid(draw: list, columns: int, sides: list[tuple[float, float]]) -> plt.Figure:
+def _grid(draw: Sequence[Draw], columns: int, sides: Sequence[tuple[float, float]]) -> plt.Figure:
     """Pictures of one plane, a row for each quantity, in the shape of the plane."""
     across, up = (high - low for low, high in sides)
     return panels(draw, columns, (4.2, float(np.clip(3.2 * up / across, 1.6, 7)) + 0.7))
 
 
-def _spans(ends: list[tuple[np.ndarray, np.ndarray]], margin: float) -> list[tuple[float, float]]:
+def _spans(ends: Sequence[tuple[Array, Array]], margin: float) -> list[tuple[float, float]]:
     """From the least to the greatest place along both axes of a plane, in any of the results."""
     return [(min(e[k].min() for e in ends) - margin, max(e[k].max() for e in ends) + margin) for k in (0, 1)]
 
 
-def slices(results: Results, cut: str, index: list[int]) -> plt.Figure:
+def slices(results: Mapping[str, Fields], cut: str, index: Sequence[int]) -> plt.Figure:
     """The layer of each result with that index across the axis `cut`: a row for each field that all have, on one colour
     scale and over one span of places."""
     across, up = [axis for axis in AXES if axis != cut]
-    fields = [result.fields for result in results.values()]
-    sides = _spans([(f.axis(across), f.axis(up)) for f in fields], fields[0].voxel)
+    sides = _spans([(f.axis(across), f.axis(up)) for f in results.values()], next(iter(results.values())).voxel)
+
+    def one(name: str, scale: Mapping[str, object], label: str, k: int, ax: Axes) -> None:
+        plots.field_slice(results[label], name, cut, k, ax=ax, scale=scale)
+        ax.set(xlim=sides[0], ylim=sides[1], title=f"{label}: {ax.get_title()}")
+
     draw = []
     for name in ordered(compare.common_fields(results), FIELDS_FIRST):
-        scale = plots.colours(*(plots.layer(f, name, cut, k) for f, k in zip(fields, index)))
-        for label, f, k in zip(results, fields, index):
-            def one(ax, name=name, scale=scale, label=label, f=f, k=k):
-                plots.field_slice(f, name, cut, k, ax=ax, scale=scale)
-                ax.set(xlim=sides[0], ylim=sides[1], title=f"{label}: {ax.get_title()}")
-            draw.append(one)
+        scale = plots.colours(*(plots.layer(f, name, cut, k) for f, k in zip(results.values(), index)))
+        draw += [partial(one, name, scale, label, k) for label, k in zip(results, index)]
     return _grid(draw, len(results), sides)
 
 
-def maps(tables: Mapping[str, Table], names: list[str]) -> plt.Figure:
+def maps(tables: Mapping[str, Table], names: Sequence[str]) -> plt.Figure:
     """Columns of tables of places, a row for each, on one colour scale and over one span of places."""
     first, second = next(iter(tables.values())).columns[:2]
     sides = _spans([(t[first], t[second]) for t in tables.values()], 0)
+
+    def one(name: str, scale: Mapping[str, object], label: str, ax: Axes) -> None:
+        plots.table_map(tables[label], name, ax, scale)
+        ax.set(xlim=sides[0], ylim=sides[1], title=f"{label}: {ax.get_title()}")
+
     draw = []
     for name in names:
         scale = plots.colours(*(table[name] for table in tables.values()))
-        for label, table in tables.items():
-            def one(ax, name=name, scale=scale, label=label, table=table):
-                plots.table_map(table, name, ax, scale)
-                ax.set(xlim=sides[0], ylim=sides[1], title=f"{label}: {ax.get_title()}")
-            draw.append(one)
+        draw += [partial(one, name, scale, label) for label in tables]
     return _grid(draw, len(tables), sides)
 
 
-def _slices(page: Page, results: Results, cut: str, at: float | None) -> None:
-    fields = [result.fields for result in results.values()]
-    index = [plots.middle(f, cut) if at is None else int(np.argmin(np.abs(f.axis(cut) - at))) for f in fields]
-    where = ", ".join(f"{label} at {cut} = {number(f.axis(cut)[k])}" for label, f, k in zip(results, fields, index))
-    page.add("Slices", page.picture("slices", slices(results, cut, index), f"Slices ({where}), each field on one colour scale; blank: no value."))
+def _slices(page: Page, results: Mapping[str, Fields], cut: str, at: float | None) -> None:
+    index = [plots.middle(f, cut) if at is None else int(np.argmin(np.abs(f.axis(cut) - at))) for f in results.values()]
+    where = ", ".join(f"{label} at {cut} = {number(f.axis(cut)[k])}" for (label, f), k in zip(results.items(), index))
+    page.add("Slices", page.picture("slices", slices(results, cut, index),
+                                    f"Slices ({where}), each field on one colour scale; blank: no value."))
 
 
 def _spreading(page: Page, tables: Mapping[str, Table]) -> None:
@@ -152,14 +165,14 @@ def _spreading(page: Page, tables: Mapping[str, Table]) -> None:
                                                  "Variance of the displacements of grains about their mean motion against the way that they fell."))
 
 
-def _tracers(page: Page, results: Results) -> None:
-    draw = []
-    for label, result in results.items():
-        def one(ax, label=label, tracers=result.tracers):
-            plots.tracer_paths(tracers, ax)
-            ax.set(title=label)
-        draw.append(one)
-    page.add("Tracers", page.picture("tracers", panels(draw, len(results), (5, 5)), "Paths of tracers from their seeds (dots)."))
+def _tracers(page: Page, results: Mapping[str, Tracers]) -> None:
+    def one(label: str, tracers: Tracers, ax: Axes) -> None:
+        plots.tracer_paths(tracers, ax)
+        ax.set(title=label)
+
+    draw = [partial(one, label, tracers) for label, tracers in results.items()]
+    page.add("Tracers", page.picture("tracers", panels(draw, len(results), (5, 5)),
+                                     "Paths of tracers from their seeds (dots)."))
 
 
 def _measured(page: Page, name: str, tables: Mapping[str, Table]) -> None:
@@ -176,7 +189,7 @@ def _measured(page: Page, name: str, tables: Mapping[str, Table]) -> None:
     page.add(f"Measured: {name.replace('_', ' ')}", *parts)
 
 
-def labels_of(folders: list[str], labels: list[str] | None) -> list[str]:
+def labels_of(folders: Sequence[str], labels: Sequence[str] | None) -> Sequence[str]:
     """Those given, or the names of the folders, or their paths where names come twice."""
     labels = labels or [os.path.basename(os.path.abspath(folder)) for folder in folders]
     if len(set(labels)) < len(folders):
@@ -184,8 +197,8 @@ def labels_of(folders: list[str], labels: list[str] | None) -> list[str]:
     return labels
 
 
-def write_comparison(folders: list[str], output: str | None = None, labels: list[str] | None = None, axis: str = "z",
-                     cut: str | None = None, at: float | None = None) -> list[str]:
+def write_comparison(folders: Sequence[str], output: str | None = None, labels: Sequence[str] | None = None,
+                     axis: str = "z", cut: str | None = None, at: float | None = None) -> list[str]:
     """Writes report.html and its pictures into `output` (beside/ in the first folder unless given) and returns the files.
 
     Raises FileNotFoundError for a folder without a result, and hdf.ResultError for files that are something else and for
@@ -199,16 +212,17 @@ def write_comparison(folders: list[str], output: str | None = None, labels: list
         tables = compare.common_tables(results)
         _overview(page, results)
         _numbers(page, tables)
-        if fields := compare.common_fields(results):
-            cut = cut or plots.slice_axis(next(iter(results.values())).fields)
-            if "velocity" in fields and cut != axis:
-                _velocity(page, results, axis, cut)
-            _slices(page, results, cut, at)
-            _profiles(page, results, axis)
+        fields = compare.fields_of(results)
+        if common := compare.common_fields(fields):
+            cut = cut or plots.slice_axis(next(iter(fields.values())))
+            if "velocity" in common and cut != axis:
+                _velocity(page, fields, axis, cut)
+            _slices(page, fields, cut, at)
+            _profiles(page, fields, axis)
         if "diffusion" in tables:
             _spreading(page, tables["diffusion"])
-        if all(result.tracers is not None for result in results.values()):
-            _tracers(page, results)
+        if tracers := compare.tracers_of(results):
+            _tracers(page, tracers)
         for name, by_label in tables.items():
             _measured(page, name, by_label)
         for label, result in results.items():

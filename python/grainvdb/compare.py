@@ -4,15 +4,19 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Callable, TypeVar
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
 from . import hdf, plots
+from .arrays import Array
 from .fields import AXES, Fields
 from .tables import Number, Table, Tables
 from .tracers import Tracers
+
+_Part = TypeVar("_Part")
 
 
 @dataclass
@@ -34,7 +38,7 @@ class Result:
 
     def units(self) -> dict[str, str]:
         """Of everything in it, by what it is."""
-        units = {}
+        units: dict[str, str] = {}
         if self.fields is not None:
             units |= {f"the axis {axis}": self.fields.unit(axis) for axis in AXES}
             units |= {f"the field {name}": self.fields.unit(name) for name in self.fields}
@@ -59,7 +63,7 @@ class Result:
 def open_result(folder: str | os.PathLike[str]) -> Result:
     """Opens what an output folder holds. Raises FileNotFoundError where it holds no result, ResultError for files that
     are something else."""
-    def part(name, kind):
+    def part(name: str, kind: Callable[[str], _Part]) -> _Part | None:
         path = os.path.join(folder, name)
         return kind(path) if os.path.isfile(path) else None
 
@@ -95,20 +99,31 @@ def deviation(a: Number, b: Number) -> float:
     return (b.value - a.value) / together if together > 0 else float("nan")
 
 
-def common_fields(results: Results) -> list[str]:
+def _of_all(parts: Mapping[str, _Part | None]) -> dict[str, _Part]:
+    there = {label: part for label, part in parts.items() if part is not None}
+    return there if len(there) == len(parts) else {}
+
+
+def fields_of(results: Results) -> dict[str, Fields]:
+    """The fields of each result by its label; empty unless all have some."""
+    return _of_all({label: result.fields for label, result in results.items()})
+
+
+def tracers_of(results: Results) -> dict[str, Tracers]:
+    """The tracers of each result by its label; empty unless all have some."""
+    return _of_all({label: result.tracers for label, result in results.items()})
+
+
+def common_fields(results: Mapping[str, Fields]) -> list[str]:
     """Names of the fields that all have."""
-    all_fields = [result.fields for result in results.values()]
-    if any(fields is None for fields in all_fields):
-        return []
-    return [name for name in all_fields[0] if all(name in fields for fields in all_fields)]
+    return [name for name in next(iter(results.values()), ()) if all(name in fields for fields in results.values())]
 
 
 def common_tables(results: Results) -> dict[str, dict[str, Table]]:
     """The tables that all have, of each result by its label."""
-    all_tables = {label: result.tables or {} for label, result in results.items()}
-    first = next(iter(all_tables.values()))
+    all_tables = _of_all({label: result.tables for label, result in results.items()})
     return {name: {label: tables[name] for label, tables in all_tables.items()}
-            for name in first if all(name in tables for tables in all_tables.values())}
+            for name in next(iter(all_tables.values()), ()) if all(name in tables for tables in all_tables.values())}
 
 
 def missing(results: Results) -> list[str]:
@@ -139,22 +154,22 @@ def columns(tables: Mapping[str, Table], name: str, ax: Axes | None = None, agai
     return ax
 
 
-def heights(results: Results, name: str, along: str, across: str, count: int = 6) -> np.ndarray:
+def heights(results: Mapping[str, Fields], name: str, along: str, across: str, count: int = 6) -> Array:
     """Places along an axis, far from each other, at which every result knows a field over more than half of the width
     that it has anywhere; voxel centres of the first result."""
     spans = []
-    for result in results.values():
-        known = np.isfinite(lines(result.fields, name, along, across)).sum(axis=1)
-        at = result.fields.axis(along)[known > 0.5 * known.max()]
+    for fields in results.values():
+        known = np.isfinite(lines(fields, name, along, across)).sum(axis=1)
+        at = fields.axis(along)[known > 0.5 * known.max()]
         spans.append((at.min(), at.max()))
     low, high = max(s[0] for s in spans), min(s[1] for s in spans)
     if low >= high:
         return np.array([])
-    centres = next(iter(results.values())).fields.axis(along)
+    centres = next(iter(results.values())).axis(along)
     return np.unique([centres[np.argmin(np.abs(centres - at))] for at in np.linspace(low, high, count + 2)[1:-1]])
 
 
-def lines(fields: Fields, name: str, along: str, across: str) -> np.ndarray:
+def lines(fields: Fields, name: str, along: str, across: str) -> Array:
     """A field, of a vector its component along the first axis, as means over the third axis where it is known; of shape
     (along, across)."""
     values = fields.values(name, -1).astype(float)
@@ -165,14 +180,14 @@ def lines(fields: Fields, name: str, along: str, across: str) -> np.ndarray:
     return means if AXES.index(along) > AXES.index(across) else means.T
 
 
-def profile_across(results: Results, name: str, at: float, along: str, across: str, ax: Axes | None = None) -> Axes:
+def profile_across(results: Mapping[str, Fields], name: str, at: float, along: str, across: str,
+                   ax: Axes | None = None) -> Axes:
     """The line of voxels nearest to a place along an axis, over another axis."""
     ax = ax or plt.subplots()[1]
-    for label, result in results.items():
-        k = int(np.argmin(np.abs(result.fields.axis(along) - at)))
-        ax.plot(result.fields.axis(across), lines(result.fields, name, along, across)[k], ".-", ms=4, lw=0.9, label=label)
-    unit = result.fields.unit(name)
-    ax.set(xlabel=plots.label(across, result.fields.unit(across)), ylabel=plots.label(f"{name} {along}", unit),
-           title=f"{along} = {at:.3g} {result.fields.unit(along)}")
+    for label, fields in results.items():
+        k = int(np.argmin(np.abs(fields.axis(along) - at)))
+        ax.plot(fields.axis(across), lines(fields, name, along, across)[k], ".-", ms=4, lw=0.9, label=label)
+    ax.set(xlabel=plots.label(across, fields.unit(across)), ylabel=plots.label(f"{name} {along}", fields.unit(name)),
+           title=f"{along} = {at:.3g} {fields.unit(along)}")
     ax.grid(alpha=0.3)
     return ax

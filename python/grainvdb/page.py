@@ -5,6 +5,7 @@ import base64
 import html
 import io
 import os
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Callable, Iterator
 
@@ -14,6 +15,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+
+#: Draws one panel of a picture.
+Draw = Callable[[Axes], object]
 
 #: Fields that say the most come first; every other field follows.
 FIELDS_FIRST = ("phi", "velocity", "temperature", "shear_rate", "pressure", "mu", "inertial_number", "fluidity", "gd_over_dv")
@@ -65,7 +69,7 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def html_table(rows: list[tuple[str, ...]], head: tuple[str, ...] = ()) -> str:
+def html_table(rows: Sequence[tuple[str, ...]], head: Sequence[str] = ()) -> str:
     def cell(tag: str, value: str) -> str:
         return f'<{tag}{" class=n" if tag == "td" and _is_number(value) else ""}>{html.escape(value)}</{tag}>'
 
@@ -74,7 +78,7 @@ def html_table(rows: list[tuple[str, ...]], head: tuple[str, ...] = ()) -> str:
     return '<div class="wide"><table>' + "\n".join(lines) + "</table></div>"
 
 
-def panels(draw: list[Callable[[Axes], object]], columns: int, size: tuple[float, float]) -> plt.Figure:
+def panels(draw: Sequence[Draw], columns: int, size: tuple[float, float]) -> plt.Figure:
     columns = min(columns, len(draw))
     rows = -(-len(draw) // columns)
     figure, axes = plt.subplots(rows, columns, squeeze=False, figsize=(size[0] * columns, size[1] * rows), layout="constrained")
@@ -93,13 +97,13 @@ def with_error(value: float, error: float) -> str:
     return number(value) if np.isnan(error) else f"{number(value)} ± {number(error)}"
 
 
-def ordered(names: list[str], first: tuple[str, ...]) -> list[str]:
+def ordered(names: Sequence[str], first: Sequence[str]) -> list[str]:
     """Of fields: those that say the most first; errors and counts of frames not at all."""
     plain = [n for n in names if not n.endswith("_error") and n != "frames"]
     return [n for n in first if n in plain] + [n for n in plain if n not in first]
 
 
-def provenance(page: Page, heading: str, texts: dict[str, str]) -> None:
+def provenance(page: Page, heading: str, texts: Mapping[str, str]) -> None:
     """A section with what a result was made from, the pipeline first."""
     parts = [f"<details{' open' if key == 'pipeline' else ''}><summary>{html.escape(key.replace('_', ' '))}</summary><pre>{html.escape(value)}</pre></details>"
              for key, value in sorted(texts.items(), key=lambda item: (item[0] != "pipeline", item[0])) if value.strip()]

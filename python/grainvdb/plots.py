@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from . import laws
+from .arrays import Array
 from .collapse import Collapse, collapse
 from .fields import AXES, Fields
 from .tables import Table
@@ -23,7 +24,7 @@ def label(name: str, unit: str) -> str:
     return words if unit in ("", "1") else f"{words} [{unit}]"
 
 
-def scalar(fields: Fields, name: str, time: int = -1) -> tuple[np.ndarray, str]:
+def scalar(fields: Fields, name: str, time: int = -1) -> tuple[Array, str]:
     """A field as one number per voxel with its label: the magnitude of a vector, a third of the trace of a tensor, the
     most compressive principal stress."""
     values = fields.values(name, time).astype(float)
@@ -53,7 +54,7 @@ def middle(fields: Fields, axis: str) -> int:
     return len(fields.axis(axis)) // 2
 
 
-def colours(*values: np.ndarray) -> dict[str, object]:
+def colours(*values: Array) -> dict[str, object]:
     """A colour map with its ends that suits several pictures together: from their 1st to their 99th percentile, about
     zero where they have either sign."""
     finite = np.concatenate([np.ma.masked_invalid(v).compressed() for v in values])
@@ -64,7 +65,7 @@ def colours(*values: np.ndarray) -> dict[str, object]:
     return {"cmap": "RdBu_r", "vmin": -bound, "vmax": bound}
 
 
-def layer(fields: Fields, name: str, axis: str, index: int, time: int = -1) -> np.ndarray:
+def layer(fields: Fields, name: str, axis: str, index: int, time: int = -1) -> Array:
     """One layer of voxels across an axis as one number per voxel, rows upwards."""
     return np.take(scalar(fields, name, time)[0], index, axis=2 - AXES.index(axis))
 
@@ -90,15 +91,15 @@ def field_slice(fields: Fields, name: str, axis: str | None = None, index: int |
     return ax
 
 
-def _arrows(fields: Fields, ax: Axes, vectors: np.ndarray, across: str, up: str) -> None:
+def _arrows(fields: Fields, ax: Axes, vectors: Array, across: str, up: str) -> None:
     step = max(1, max(vectors.shape[:2]) // 14)
     part = vectors[step // 2::step, step // 2::step]
     ax.quiver(fields.axis(across)[step // 2::step], fields.axis(up)[step // 2::step], part[..., AXES.index(across)],
               part[..., AXES.index(up)], color="white", pivot="middle", width=0.006)
 
 
-def _layers(values: np.ndarray, axis: str) -> tuple[np.ma.MaskedArray, np.ma.MaskedArray]:
-    """Mean and standard deviation over the voxels of each layer across an axis that have a value."""
+def _layers(values: Array, axis: str) -> tuple[Array, Array]:
+    """Mean and standard deviation of the values in each layer of voxels across an axis; masked where there are none."""
     others = tuple(k for k, other in enumerate("zyx") if other != axis)
     layers = np.ma.masked_invalid(values)
     return layers.mean(axis=others), layers.std(axis=others)
@@ -184,7 +185,7 @@ def friction_against_inertial(fields: Fields, time: int = -1, ax: Axes | None = 
 
 def _bars(ax: Axes, numbers: Mapping[str, float], style: str, xlabel: str) -> Axes:
     """A bar for each number, the first on top."""
-    bars = ax.barh(list(reversed(numbers)), list(reversed(numbers.values())), color="0.5")
+    bars = ax.barh(list(numbers)[::-1], list(numbers.values())[::-1], color="0.5")
     ax.bar_label(bars, fmt=style, padding=3)
     ax.set(xlabel=xlabel)
     ax.margins(x=0.15)
@@ -240,7 +241,7 @@ def tracer_history(tracers: Tracers, name: str, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def tracer_against(tracers: Tracers, x: str, y: str, where: np.ndarray | None = None, ax: Axes | None = None,
+def tracer_against(tracers: Tracers, x: str, y: str, where: Array | None = None, ax: Axes | None = None,
                    bins: int = 25) -> tuple[Axes, Collapse]:
     """One recorded quantity against another along the ways of tracers, `where` they count, with the mean of each bin and the
     scatter about it."""

@@ -12,15 +12,17 @@ import json
 import os
 import re
 import sys
-from typing import Any, Callable
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from . import hdf, plots
 from .beside import write_comparison
 from .fields import AXES, Fields
-from .page import FIELDS_FIRST, PROFILES_FIRST, Page, html_table, number, ordered, panels, provenance, with_error, write
+from .page import (FIELDS_FIRST, PROFILES_FIRST, Draw, Page, html_table, number, ordered, panels, provenance,
+                   with_error, write)
 from .tables import Table, Tables
 from .tracers import Tracers
 
@@ -69,7 +71,7 @@ def _profiles(page: Page, fields: Fields, axis: str) -> None:
     page.add("Profiles", page.picture("profiles", panels(draw, 3, (3.6, 3.2)), caption))
 
 
-def _scales(page: Page, results: dict[str, Fields], axis: str) -> None:
+def _scales(page: Page, results: Mapping[str, Fields], axis: str) -> None:
     first = next(iter(results.values()))
     draw = [lambda ax, n=n: plots.scales(results, n, axis, ax=ax) for n in ordered(first.names, PROFILES_FIRST)]
     figure = panels(draw, 3, (3.6, 3.2))
@@ -80,7 +82,7 @@ def _scales(page: Page, results: dict[str, Fields], axis: str) -> None:
 
 
 def _rheology(page: Page, fields: Fields, fitted: tuple[float, float, float, float] | None) -> None:
-    draw: list[Callable[[Axes], object]] = []
+    draw: list[Draw] = []
     said = []
     if "phi" in fields and "gd_over_dv" in fields:
         draw.append(lambda ax: plots.fluidity_against_phi(fields, fitted=fitted, ax=ax))
@@ -110,8 +112,9 @@ def _tracers(page: Page, tracers: Tracers) -> None:
     parts = [html_table(rows, ("at the end", "tracers")),
              page.picture("tracer_paths", paths, "Paths from the seeds (dots).")]
     if names:
-        histories = panels([lambda ax, n=n: plots.tracer_history(tracers, n, ax) for n in names], 3, (3.9, 2.9))
-        parts.append(page.picture("tracer_histories", histories, "What was recorded along the paths: every tracer thin, the median thick."))
+        histories = panels([partial(plots.tracer_history, tracers, n) for n in names], 3, (3.9, 2.9))
+        parts.append(page.picture("tracer_histories", histories,
+                                  "What was recorded along the paths: every tracer thin, the median thick."))
     page.add("Tracers", *parts)
 
 
@@ -123,10 +126,10 @@ def _measured(page: Page, table: Table) -> None:
         parts.append(html_table(numbers, ("quantity", "value", "unit", "what it is")))
     drawn = [c for c in table.columns[1:] if not c.endswith("_error") and np.any(np.isfinite(table[c]))]
     if plots.is_map(table):
-        draw = [lambda ax, c=c: plots.table_map(table, c, ax) for c in drawn if c != table.columns[1]]
+        draw = [partial(plots.table_map, table, c) for c in drawn if c != table.columns[1]]
         parts.append(page.picture(f"table_{table.name}", panels(draw, 3, (3.9, 3.9)), f"Table {table.name}; blank: no value."))
     elif drawn and len(table[table.columns[0]]) > 1:
-        draw = [lambda ax, c=c: plots.table_column(table, c, ax) for c in drawn]
+        draw = [partial(plots.table_column, table, c) for c in drawn]
         parts.append(page.picture(f"table_{table.name}", panels(draw, 3, (3.9, 2.9)), f"Table {table.name}; bars are standard errors."))
     page.add(f"Measured: {table.name.replace('_', ' ')}", *parts)
 
@@ -144,7 +147,7 @@ def _record(path: str) -> dict[str, Any]:
     return record
 
 
-def _run(page: Page, record: dict[str, Any]) -> None:
+def _run(page: Page, record: Mapping[str, Any]) -> None:
     seconds = record["seconds_by_step"]
     rows = [("time", f"{record['wall_seconds']:.2f} s"), ("memory at most", f"{record['peak_memory_bytes'] / 1e6:.0f} MB"),
             ("read", f"{record['frames']} frames, {record['bytes_read'] / 1e6:.1f} MB")]
@@ -210,7 +213,7 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
     return list(write(page, output))
 
 
-def main(arguments: list[str] | None = None) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="grainvdb report", description="Makes one self-contained HTML page, and PNG pictures, from a result.",
                                      epilog="Example: grainvdb report output && xdg-open output/report/report.html")
     parser.add_argument("folder", metavar="DIR", help="the output folder of a run, with fields.hdf, tracers.h5 or tables.h5, or a folder for each scale")

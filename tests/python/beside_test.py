@@ -29,6 +29,9 @@ class SideBySide(unittest.TestCase):
             self.addCleanup(one.close)
         return opened
 
+    def fields(self):
+        return compare.fields_of(self.results())
+
     def test_one_page_holds_both(self):
         done = report(self.dem, "--beside", self.spot, "--label", "DEM", "the spots", "--output", self.folder)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -89,19 +92,19 @@ class SideBySide(unittest.TestCase):
         np.testing.assert_array_equal(ax.containers[1].lines[0].get_xdata(), tables["spots"]["travelled"])
 
     def test_velocity_profiles_are_means_over_the_depth(self):
-        results = self.results()
+        results = self.fields()
         at = compare.heights(results, "velocity", "z", "x")
         self.assertEqual(len(at), 6)
         ax = compare.profile_across(results, "velocity", at[2], "z", "x")
         for line, one in zip(ax.get_lines(), results.values()):
-            velocity = one.fields["velocity"].sel(component3="z").sel(z=at[2], method="nearest")
+            velocity = one["velocity"].sel(component3="z").sel(z=at[2], method="nearest")
             np.testing.assert_array_equal(line.get_xdata(), velocity.x)
             # 16 voxels deep: each sum is rounded at most so often, by 2^-53 of floats that are exact.
             np.testing.assert_allclose(line.get_ydata(), velocity.astype(float).mean("y"), rtol=16 * 2**-53)
         self.assertLess(ax.get_lines()[0].get_ydata().min(), -0.3)  # it flows down
 
     def test_pictures_of_a_field_share_their_colours_and_places(self):
-        results = self.results()
+        results = self.fields()
         figure = beside.slices(results, "y", [3, 5])
         drawn = [ax for ax in figure.axes if ax.images and ax.get_title()]
         self.assertEqual([ax.get_title().split(":")[0] for ax in drawn], ["DEM", "spots"] * (len(drawn) // 2))
@@ -109,7 +112,8 @@ class SideBySide(unittest.TestCase):
             self.assertEqual(left.images[0].get_clim(), right.images[0].get_clim())
             self.assertEqual(left.images[0].get_cmap(), right.images[0].get_cmap())
             self.assertEqual((left.get_xlim(), left.get_ylim()), (right.get_xlim(), right.get_ylim()))
-        np.testing.assert_array_equal(np.ma.masked_invalid(plots.layer(results["spots"].fields, "phi", "y", 5)), drawn[1].images[0].get_array())
+        layer = np.ma.masked_invalid(plots.layer(results["spots"], "phi", "y", 5))
+        np.testing.assert_array_equal(layer, drawn[1].images[0].get_array())
 
     def test_maps_show_where_it_is_loose(self):
         tables = compare.common_tables(self.results())["voronoi_map"]
