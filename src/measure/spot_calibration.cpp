@@ -259,6 +259,10 @@ class SpotCalibration : public Measurement {
 
   void add_remarks(Table& t) const {
     if (loosening_.frames() == 0) t.remarks.emplace_back("No frame after the packing at rest belongs to the flow.");
+    if (loosening_.result().drop.value <= 0)
+      t.remarks.emplace_back(
+          "The flow is no looser than what it is compared with, so that spots have no speed: give phi_at_rest, or "
+          "reference: layers.");
     if (counts_.times().size() < loosening_.frames()) t.remarks.emplace_back("Frames without a time have no rates.");
     if (outputs_ < 3)
       t.remarks.emplace_back(

@@ -146,11 +146,18 @@ std::string spots_text(const Table& calibration, double diameter) {
   return text + '\n';
 }
 
+// Without the rounding of a product.
+double to_ten_digits(double x) {
+  const double scale = std::pow(10, 10 - std::ceil(std::log10(x)));
+  return std::round(x * scale) / scale;
+}
+
 std::string output_text(const std::vector<std::size_t>& frames, const FrameSource& source) {
   const auto &first = source.frames()[frames.front()].time, &last = source.frames()[frames.back()].time;
   const double steps = static_cast<double>(frames.size()) - 1;
   const double interval = std::stod(short_number((*last - *first) / steps));
-  std::string text = "\noutput:\n  interval: " + print_number(interval) + "\n  end: " + print_number(steps * interval);
+  const double end = to_ten_digits(steps * interval);
+  std::string text = "\noutput:\n  interval: " + print_number(interval) + "\n  end: " + print_number(end);
   if (find_unit_system(source.units().name) != nullptr) text += "\n  units: " + source.units().name;
   return text + "\n\nseed: 1\n";
 }

@@ -90,7 +90,7 @@ TEST(SpotCalibrate, SaysWhichParameterTheFramesDoNotTell) {
   const CommandResult result = calibrate(folder, {"--set", "measure.spot_calibration.phi_at_rest=0.5"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, AllOf(HasSubstr("spot_calibrate.yaml:"), HasSubstr("do not tell every parameter"),
-                                HasSubstr("hop_rate (nan)")));
+                                HasSubstr("hop_rate (nan)"), HasSubstr("no looser than")));
   EXPECT_THAT(folder.names_in("c"), ElementsAre("run.json", "tables", "tables.h5"));
 }
 
