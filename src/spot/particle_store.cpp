@@ -201,7 +201,8 @@ void ParticleStore::take_from_cell(std::int32_t i) {
 }
 
 void ParticleStore::grow_cells() {
-  const std::size_t old_capacity = cells_.capacity, capacity = 2 * old_capacity;
+  // No more than needed: searches copy cells in full.
+  const std::size_t old_capacity = cells_.capacity, capacity = old_capacity + 8;
   std::vector<std::int32_t> members(counts_.size() * capacity, 0);
   for (std::size_t cell = 0; cell < counts_.size(); ++cell)
     std::copy_n(members_.begin() + static_cast<std::ptrdiff_t>(cell * old_capacity), counts_[cell],
