@@ -50,13 +50,20 @@ struct ContactSplat::Parts {
 };
 
 ContactSplat::ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
-                           std::span<const double> q, int channels, LineIntegral method, const Region* wanted) {
+                           std::span<const double> q, int channels, LineIntegral method, const Region* wanted)
+    : ContactSplat(lattice, kernel, branches, q, channels, method, wanted, std::make_shared<const Topology>()) {
+  if (parts_) topology_ = parts_->leaves.topology(wanted);
+}
+
+ContactSplat::ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
+                           std::span<const double> q, int channels, LineIntegral method, const Region* wanted,
+                           std::shared_ptr<const Topology> onto)
+    : topology_(std::move(onto)) {
   if (channels < 1 || q.size() != branches.size() * static_cast<std::size_t>(channels))
     throw std::invalid_argument("the splat needs one value per branch and channel");
   if (branches.size() == 0) return;
   parts_ = std::make_unique<Parts>(lattice, kernel, branches, BranchValues{q, static_cast<std::size_t>(channels)},
                                    method, wanted);
-  topology_ = parts_->leaves.topology(wanted);
 }
 
 ContactSplat::~ContactSplat() = default;
