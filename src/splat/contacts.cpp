@@ -52,6 +52,7 @@ struct ContactSplat::Parts {
 ContactSplat::ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
                            std::span<const double> q, int channels, LineIntegral method, const Region* wanted)
     : ContactSplat(lattice, kernel, branches, q, channels, method, wanted, std::make_shared<const Topology>()) {
+  has_more_voxels_ = false;
   if (parts_) topology_ = parts_->leaves.topology(wanted);
 }
 
@@ -72,6 +73,8 @@ void ContactSplat::sums(const LeafConsumer& consume) const {
   if (!parts_) return;
   if (parts_->method.method == LineIntegral::Method::exact) {
     parts_->sum_exactly(*topology_, consume);
+  } else if (has_more_voxels_) {
+    parts_->leaves.sums_where_reached(*topology_, consume);
   } else {
     parts_->leaves.sums(*topology_, consume);
   }

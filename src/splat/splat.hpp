@@ -80,6 +80,7 @@ class ContactSplat {
   struct Parts;
   std::unique_ptr<Parts> parts_;  // nothing without branches
   std::shared_ptr<const Topology> topology_;
+  bool has_more_voxels_ = true;  // than the branches reach
 };
 
 }  // namespace grainvdb
