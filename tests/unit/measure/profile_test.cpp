@@ -110,8 +110,8 @@ TEST(Profile, FieldsOfSpeciesAreWeighedByTheirOwnGrains) {
     EXPECT_NEAR(column_of(table, "phi_a")[n] + column_of(table, "phi_b")[n], column_of(table, "phi")[n], 1e-7);
     EXPECT_NEAR(column_of(table, "velocity_b_x")[n], sum / weight, 1e-6);
   }
-  const auto column = std::find_if(table.columns.begin(), table.columns.end(),
-                                   [](const TableColumn& c) { return c.name == "phi_b"; });
+  const auto column =
+      std::find_if(table.columns.begin(), table.columns.end(), [](const TableColumn& c) { return c.name == "phi_b"; });
   EXPECT_EQ(column->description, "packing fraction, of species b alone, average");
 }
 
