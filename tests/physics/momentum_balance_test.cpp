@@ -23,7 +23,7 @@ const Vec3 velocity{0.8, -0.5, 0.4}, gravity{0, 0.3, -0.9};
 struct Pushed {
   Pushed() {
     std::mt19937 random(11);
-    std::uniform_real_distribution<double> along(-5.5, 5.5), size(0.4, 0.6), push(-1, 1);
+    std::uniform_real_distribution<double> along(-5.5, 5.5), size(0.4, 0.6), push(-0.2, 0.2);
     Particles& p = frame.particles;
     frame.box = {{-20, -20, -20}, {20, 20, 20}, {false, false, false}};
     for (std::size_t i = 0; i < grains; ++i) {
@@ -122,14 +122,15 @@ class Balance {
   std::vector<Written> times_;
 };
 
-// As in the balance of mass, central differences of order 4 leave some 1e-3 of the terms, whatever Δt is.
+// Found: 0.0433, 0.0110 and 0.0028, quotients of 3.95 and 3.98, down to 8e-4 for half of the last Δt again, what
+// differences in space and voxels leave. The stress is a quarter of what is balanced.
 TEST(MomentumBalance, ResidualFallsAsTheSquareOfTheTimeBetweenFrames) {
   const Pushed pushed;
   const Balance coarse(pushed, 0.2), middle(pushed, 0.1), fine(pushed, 0.05);
-  EXPECT_NEAR(coarse.residual() / middle.residual(), 4, 0.4);
-  EXPECT_NEAR(middle.residual() / fine.residual(), 4, 0.4);
-  EXPECT_LT(fine.residual(), 0.01);
-  EXPECT_GT(fine.residual(0), 0.3);
+  EXPECT_NEAR(coarse.residual() / middle.residual(), 4, 0.2);
+  EXPECT_NEAR(middle.residual() / fine.residual(), 4, 0.2);
+  EXPECT_LT(fine.residual(), 0.004);
+  EXPECT_GT(fine.residual(0), 0.2);
 }
 
 }  // namespace
