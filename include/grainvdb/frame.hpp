@@ -61,7 +61,8 @@ struct Particles {
   std::vector<double> radius;  ///< > 0 [length]
   std::vector<double> mass;    ///< > 0 [mass]
   std::vector<int> type;
-  Columns3 force;  ///< total force [force]
+  Columns3 force;            ///< total force [force]
+  std::vector<int> species;  ///< number in Pipeline::species, -1: none; not read but told by it, empty without species
 
   std::size_t size() const { return id.size(); }
 };

@@ -54,6 +54,7 @@ struct MeasurementInfo {
   std::string description;  ///< one line
   std::string equation;     ///< formula with its tag
   std::vector<OptionInfo> options{};
+  std::string field_option{};  ///< the option that names fields, those of species among them; empty where none does
   /// Option values that are refused together; empty where none are.
   std::function<std::optional<OptionConflict>(const OptionValues&)> conflict{};
   std::function<MeasurementNeeds(const OptionValues&)> needs;

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -83,6 +84,8 @@ struct Moment {
       mean_needs{};                  ///< moments whose time mean must be known before: one more sweep over the frames
   std::array<bool, 3> whole_axes{};  ///< along these the frame_needs are needed everywhere, not near the particles only
   BranchKind branch_kind = BranchKind::all;  ///< for contacts
+  /// The number of the species (Pipeline::species) whose particles, or half branches, it sums over and `values` sees.
+  std::optional<int> species{};
   LineIntegral line_integral{};              ///< for contacts
 
   /// For sums Σ w q W whose mean is taken off later: the moment Σ w W. The splat then sums w (q - r) with a local
@@ -91,7 +94,7 @@ struct Moment {
   /// For sums whose small differences are fields: added up in double precision throughout.
   bool in_double = false;
 
-  /// Fills q for every material particle (or half branch), laid out [entry][value].
+  /// Fills q for every particle (or half branch) of the view, laid out [entry][value].
   std::function<void(const FrameView& view, std::span<double> q)> values{};
 
   /// For Kind::voxels: `in` are the channels of frame_needs one after another, `out` this moment's channels; each
@@ -116,7 +119,8 @@ struct HalfBranches {
 };
 
 /// A frame as the moments see it: the material particles, the half branches that moments sum over, and fields of this
-/// frame or of the time mean sampled at the particles.
+/// frame or of the time mean sampled at the particles. Moments of a species see its own alone; the fields are those of
+/// all material.
 class FrameView {
  public:
   virtual ~FrameView() = default;

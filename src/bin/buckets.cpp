@@ -208,4 +208,29 @@ Buckets bin_points(const Lattice& lattice, const Columns3& position, double reac
   return b;
 }
 
+Buckets keep_points(const Buckets& all, std::span<const int> number, int wanted) {
+  std::vector<std::uint32_t> place(number.size());  // of each point among those that are kept
+  std::uint32_t kept = 0;
+  for (std::size_t p = 0; p < number.size(); ++p)
+    if (number[p] == wanted) place[p] = kept++;
+  Buckets some;
+  some.start.push_back(0);
+  for (std::size_t cell = 0; cell < all.cells.size(); ++cell) {
+    for (std::size_t e = all.start[cell]; e < all.start[cell + 1]; ++e) {
+      const std::uint32_t p = all.point[e];
+      if (number[p] != wanted) continue;
+      some.point.push_back(place[p]);
+      for (std::size_t a = 0; a < 3; ++a) {
+        some.index[a].push_back(all.index[a][e]);
+        some.local[a].push_back(all.local[a][e]);
+      }
+    }
+    if (some.point.size() == some.start.back()) continue;
+    some.cells.push_back(all.cells[cell]);
+    some.start.push_back(some.point.size());
+  }
+  for (auto& column : some.local) column.resize(some.point.size() + Buckets::padding);
+  return some;
+}
+
 }  // namespace grainvdb

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "grainvdb/frame.hpp"
@@ -28,5 +29,8 @@ struct Buckets {
 /// leaves. Positions must be finite and their index must fit 31 bits (the executor checks extents before); throws
 /// std::invalid_argument otherwise.
 Buckets bin_points(const Lattice& lattice, const Columns3& position, double reach, const Region* wanted = nullptr);
+
+/// The entries of the points with the number `wanted` alone, in their order. Points are counted among these.
+Buckets keep_points(const Buckets& all, std::span<const int> number, int wanted);
 
 }  // namespace grainvdb

@@ -39,6 +39,7 @@ void keep_inside(const WallDomain& domain, Particles& p) {
   keep_rows(p.radius, rows);
   keep_rows(p.mass, rows);
   keep_rows(p.type, rows);
+  keep_rows(p.species, rows);
 }
 
 void keep_inside(const WallDomain& domain, HalfBranches& b) {

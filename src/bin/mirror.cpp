@@ -42,6 +42,7 @@ void append_image(Particles& p, std::size_t n, const Wall& plane) {
   append_same(p.radius, n);
   append_same(p.mass, n);
   append_same(p.type, n);
+  append_same(p.species, n);
 }
 
 void append_image(HalfBranches& b, std::size_t n, const Wall& plane) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "measure/partial_field.hpp"
+
 namespace grainvdb {
 namespace {
 
@@ -19,10 +21,12 @@ bool turns(const std::string& field) {
 
 }  // namespace
 
-bool averaged_by_volume(const std::string& field) {
+std::string volume_weight(const std::string& field) {
   static const std::array<std::string, 5> means{"velocity", "angular_velocity", "mean_diameter", "temperature",
                                                 "rotational_fluctuation"};
-  return std::find(means.begin(), means.end(), field) != means.end();
+  const PartialField part = partial_field(field);
+  const bool by_volume = part.all != nullptr && std::find(means.begin(), means.end(), part.all->name) != means.end();
+  return by_volume ? "phi" + part.suffix() : "";
 }
 
 const std::vector<std::string>& flow_fields() {
@@ -34,8 +38,8 @@ const std::vector<std::string>& flow_fields() {
 FieldProfile::FieldProfile(const BinSpec& spec, const Lattice& lattice, std::vector<std::string> fields)
     : bins_(spec, lattice) {
   for (std::string& name : fields) {
-    const bool by_volume = averaged_by_volume(name);
-    parts_.push_back({std::move(name), by_volume});
+    std::string weight = volume_weight(name);
+    parts_.push_back({std::move(name), std::move(weight)});
   }
 }
 
@@ -63,9 +67,11 @@ void FieldProfile::take(const OutputFields& output) {
   if (output.time.frame_count == 0) return;
   if (!sums_) set_channels(output);
   sums_->begin_time();
-  std::vector<const SparseField*> fields;
-  for (const Part& p : parts_) fields.push_back(&output.fields.at(p.name));
-  const auto phi = output.fields.find("phi");
+  std::vector<const SparseField*> fields, weights;
+  for (const Part& p : parts_) {
+    fields.push_back(&output.fields.at(p.name));
+    weights.push_back(p.weight.empty() ? nullptr : &output.fields.at(p.weight));
+  }
   if (fields.empty()) return;
   const double frames = static_cast<double>(output.time.frame_count);
 
@@ -78,7 +84,7 @@ void FieldProfile::take(const OutputFields& output) {
     for (std::size_t n = 0; n < parts_.size(); ++n) {
       const Part& p = parts_[n];
       const double weight =
-          p.by_volume ? frames * static_cast<double>(phi->second.leaf(place.leaf)[place.offset]) : frames;
+          weights[n] ? frames * static_cast<double>(weights[n]->leaf(place.leaf)[place.offset]) : frames;
       std::array<double, most_components> values{};
       bool known = weight > 0;
       for (int c = 0; c < p.components; ++c) {

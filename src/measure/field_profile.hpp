@@ -14,9 +14,10 @@
 
 namespace grainvdb {
 
-/// Whether a field is a mean over particle volume, so that its average is Σ φ q/Σ φ over voxels and times: velocity,
-/// angular_velocity, mean_diameter, temperature, rotational_fluctuation. Every other is averaged as it stands.
-bool averaged_by_volume(const std::string& field);
+/// φ of the grains that a field is a mean over by volume, so that its average is Σ φ q/Σ φ over voxels and times: "phi"
+/// of velocity, angular_velocity, mean_diameter, temperature and rotational_fluctuation, "phi_small" of those of a
+/// species. Every other is averaged as it stands: nothing.
+std::string volume_weight(const std::string& field);
 
 /// The fields that a FlowState is made of, beside rotational_fluctuation.
 const std::vector<std::string>& flow_fields();
@@ -26,7 +27,7 @@ const std::vector<std::string>& flow_fields();
 /// directions of the bin first. A value that is NaN, which is how a field is masked, does not enter.
 class FieldProfile {
  public:
-  /// `fields` must be among those that take() is given; phi as well where one of them is averaged by volume.
+  /// `fields` must be among those that take() is given, and so must be what weighs them (volume_weight).
   FieldProfile(const BinSpec& spec, const Lattice& lattice, std::vector<std::string> fields);
 
   void take(const OutputFields& output);
@@ -60,7 +61,7 @@ class FieldProfile {
  private:
   struct Part {
     std::string name;
-    bool by_volume;
+    std::string weight;  // volume_weight
     int components = 1;
     std::size_t first = 0;  // channel of the weight; the components follow
   };

@@ -6,6 +6,7 @@
 #include "measure/derived_quantity.hpp"
 #include "measure/estimate_columns.hpp"
 #include "measure/field_profile.hpp"
+#include "measure/partial_field.hpp"
 #include "measure/register.hpp"
 
 namespace grainvdb {
@@ -23,7 +24,7 @@ std::vector<std::string> averaged_fields(const std::vector<std::string>& asked) 
       all.insert(derived->fields.begin(), derived->fields.end());
     } else {
       all.insert(name);
-      if (averaged_by_volume(name)) all.insert("phi");
+      if (std::string weight = volume_weight(name); !weight.empty()) all.insert(std::move(weight));
     }
   }
   return {all.begin(), all.end()};
@@ -67,12 +68,14 @@ class ProfileMeasurement : public Measurement {
       add_estimate_columns(table, name, derived->dimension, derived->description);
       return;
     }
-    const Stage& stage = *StageRegistry::standard().find(name);
+    const PartialField field = partial_field(name);
+    const Stage& stage = *field.all;
+    const std::string of = field.species.empty() ? "" : " of species " + field.species + " alone,";
     const bool scalars = name == "principal_stress";
     for (int c = 0; c < stage.components; ++c) {
       const std::string label =
           scalars ? '_' + std::to_string(c + 1) : suffix(profile_.geometry().directions(), stage.components, c);
-      add_estimate_columns(table, name + label, stage.dimension, stage.description + ", average");
+      add_estimate_columns(table, name + label, stage.dimension, stage.description + ',' + of + " average");
     }
   }
 
@@ -121,6 +124,7 @@ MeasurementInfo profile() {
                                                  "shear_rate", "pressure", "mu", "inertial_number", "gd_over_dv"},
        .help = "what to average: names of fields",
        .choices = field_names()});
+  info.field_option = "fields";
   info.conflict = bin_conflict;
   info.needs = [](const OptionValues& options) { return MeasurementNeeds{{}, averaged_fields(fields_of(options))}; };
   info.make = [](const MeasurementSetting& setting) { return std::make_unique<ProfileMeasurement>(setting); };

@@ -73,8 +73,8 @@ HalfBranches at_walls(const HalfBranches& all, const std::vector<std::uint8_t>& 
   return contacts;
 }
 
-void add_contacts_of_grains(const Frame& frame, std::span<const std::uint8_t> role, std::span<const int> species,
-                            BranchSets& sets) {
+void add_contacts_of_grains(const Frame& frame, std::span<const std::uint8_t> role, BranchSets& sets) {
+  const std::span<const int> species = frame.particles.species;
   HalfBranches all = half_branches(frame);
   std::vector<std::size_t> particle;
   if (!role.empty() || !species.empty()) particle = branch_particles(frame);
@@ -88,8 +88,8 @@ void add_contacts_of_grains(const Frame& frame, std::span<const std::uint8_t> ro
 }
 
 /// Behind those of contacts that have both half branches, so that these stay together.
-void add_contacts_with_walls(const Frame& frame, std::span<const std::uint8_t> role, std::span<const int> species,
-                             BranchSets& sets) {
+void add_contacts_with_walls(const Frame& frame, std::span<const std::uint8_t> role, BranchSets& sets) {
+  const std::span<const int> species = frame.particles.species;
   HalfBranches halves = wall_half_branches(frame);
   std::vector<std::size_t> particle;
   if (!role.empty() || !species.empty()) particle = wall_branch_particles(frame);
@@ -132,8 +132,7 @@ bool is_wall_grain(const WallSpec& walls, const Selection& selection, const Box&
   return walls.types.empty() ? !is_selected(selection, box, p, i) : contains(walls.types, p.type[i]);
 }
 
-BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, std::span<const int> species,
-                            const std::set<BranchKind>& wanted) {
+BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted) {
   BranchSets sets;
   for (const BranchKind set : wanted) sets[set];
   const bool contacts = frame.contacts.size() > 0, wall_contacts = frame.wall_contacts.size() > 0;
@@ -141,8 +140,8 @@ BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, std::s
   std::vector<std::uint8_t> role;
   if (wanted.contains(BranchKind::outside_walls) || wanted.contains(BranchKind::at_walls))
     role = roles_of_particles(frame, pipeline);
-  if (contacts) add_contacts_of_grains(frame, role, species, sets);
-  if (wall_contacts) add_contacts_with_walls(frame, role, species, sets);
+  if (contacts) add_contacts_of_grains(frame, role, sets);
+  if (wall_contacts) add_contacts_with_walls(frame, role, sets);
   return sets;
 }
 

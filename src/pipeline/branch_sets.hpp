@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <map>
 #include <set>
-#include <span>
 
 #include "grainvdb/frame.hpp"
 #include "grainvdb/moment.hpp"
@@ -21,9 +20,7 @@ bool is_wall_grain(const WallSpec& walls, const Selection& selection, const Box&
                    std::size_t i);
 
 /// The wanted sets of the half branches of a frame's contacts, those with walls that are no grains behind the others.
-/// `species` are those of the particles, as HalfBranches has them. Throws InputError as half_branches does, whatever is
-/// wanted.
-BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, std::span<const int> species,
-                            const std::set<BranchKind>& wanted);
+/// Throws InputError as half_branches does, whatever is wanted.
+BranchSets make_branch_sets(const Frame& frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted);
 
 }  // namespace grainvdb

@@ -6,6 +6,7 @@
 #include "base/parallel.hpp"
 #include "bin/leaf_bounds.hpp"
 #include "grainvdb/stage.hpp"
+#include "pipeline/species_view.hpp"
 #include "splat/own_weight.hpp"
 #include "splat/sample.hpp"
 #include "splat/second_moments.hpp"
@@ -15,6 +16,28 @@ namespace {
 
 SplatMemory memory_of(const SplatGroup& group, std::size_t bytes_per_leaf, std::size_t summed_leaves) {
   return {group.buffered_channels(), bytes_per_leaf, summed_leaves};
+}
+
+/// The values of a group's entries, [entry][value].
+std::vector<double> values_of(const SplatGroup& group, const FrameView& view) {
+  const std::vector<MomentPtr>& moments = group.moments;
+  const std::size_t n = group.entries(view);
+  const std::size_t stride = group.weight_of.size();
+  std::vector<double> all(n * stride);
+  if (moments.size() == 1) {
+    moments[0]->values(view, all);
+    return all;
+  }
+  std::vector<std::size_t> first(moments.size());
+  for (std::size_t m = 1; m < moments.size(); ++m)
+    first[m] = first[m - 1] + static_cast<std::size_t>(moments[m - 1]->value_count());
+  parallel_for(moments.size(), [&](std::size_t m) {
+    const auto width = static_cast<std::size_t>(moments[m]->value_count());
+    std::vector<double> own(n * width);
+    moments[m]->values(view, own);
+    for (std::size_t i = 0; i < n; ++i) std::copy_n(own.data() + i * width, width, all.data() + i * stride + first[m]);
+  });
+  return all;
 }
 
 }  // namespace
@@ -72,46 +95,57 @@ const std::shared_ptr<const Topology>& FrameContext::particle_leaves(const Halo&
   return topology;
 }
 
+const std::shared_ptr<const Topology>& FrameContext::contact_leaves(const SplatGroup& group) {
+  const Region* const wanted = setting_.wanted_leaves(group.halo);
+  auto& topology = contact_topologies_[{group.branch_kind(), wanted}];
+  if (topology) return topology;
+  const HalfBranches& all = branches(group.branch_kind());
+  const std::vector<double> any(all.size());  // the voxels do not depend on the values
+  const LineIntegral method = group.moments[0]->line_integral;
+  topology = ContactSplat(setting_.lattice, setting_.kernel, all, any, 1, method, wanted).topology();
+  return topology;
+}
+
 FrameContext::Started FrameContext::start(const SplatGroup& group, std::size_t bytes_per_leaf) {
   const bool contacts = group.kind() == Moment::Kind::contacts;
   const Columns3& nodes = contacts ? branches(group.branch_kind()).start : particles().position;
   const double cutoff = setting_.kernel.cutoff();
-  const Region* const wanted = setting_.wanted_leaves(group.halo);
   // Only where the most that it can be is too much is it worth looking closer.
-  if (wanted == nullptr &&
+  if (setting_.wanted_leaves(group.halo) == nullptr &&
       !fits(most_leaves(setting_.lattice, nodes, 2 * cutoff), memory_of(group, bytes_per_leaf, 0), setting_.pipeline))
     check(static_cast<std::size_t>(least_leaves(setting_.lattice, nodes, cutoff)), group, bytes_per_leaf, 0);
-  Started started{values_of(group), nullptr, nullptr};
-  if (contacts) {
-    started.contacts =
-        std::make_unique<ContactSplat>(setting_.lattice, setting_.kernel, branches(group.branch_kind()), started.values,
-                                       group.value_count(), group.moments[0]->line_integral, wanted);
-    started.topology = started.contacts->topology();
-  } else {
+  Started started;
+  if (!contacts) {
+    started.values =
+        group.species() ? values_of(group, SpeciesView(*this, *group.species(), nullptr)) : values_of(group, *this);
     started.topology = particle_leaves(group.halo);
+  } else if (group.species()) {
+    start_contacts_of_species(group, started);
+  } else {
+    start_contacts(group, started);
   }
   return started;
 }
 
-std::vector<double> FrameContext::values_of(const SplatGroup& group) const {
-  const std::vector<MomentPtr>& moments = group.moments;
-  const std::size_t n = group.entries(*this);
-  const std::size_t stride = group.weight_of.size();
-  std::vector<double> all(n * stride);
-  if (moments.size() == 1) {
-    moments[0]->values(*this, all);
-    return all;
-  }
-  std::vector<std::size_t> first(moments.size());
-  for (std::size_t m = 1; m < moments.size(); ++m)
-    first[m] = first[m - 1] + static_cast<std::size_t>(moments[m - 1]->value_count());
-  parallel_for(moments.size(), [&](std::size_t m) {
-    const auto width = static_cast<std::size_t>(moments[m]->value_count());
-    std::vector<double> own(n * width);
-    moments[m]->values(*this, own);
-    for (std::size_t i = 0; i < n; ++i) std::copy_n(own.data() + i * width, width, all.data() + i * stride + first[m]);
-  });
-  return all;
+void FrameContext::start_contacts(const SplatGroup& group, Started& started) {
+  const Region* const wanted = setting_.wanted_leaves(group.halo);
+  started.values = values_of(group, *this);
+  started.contacts =
+      std::make_unique<ContactSplat>(setting_.lattice, setting_.kernel, branches(group.branch_kind()), started.values,
+                                     group.value_count(), group.moments[0]->line_integral, wanted);
+  started.topology = started.contacts->topology();
+  contact_topologies_[{group.branch_kind(), wanted}] = started.topology;
+}
+
+// At the voxels that the branches of all reach: what a species has there is nothing, and not unknown.
+void FrameContext::start_contacts_of_species(const SplatGroup& group, Started& started) {
+  const int species = *group.species();
+  started.branches = std::make_shared<const HalfBranches>(branches_of_species(branches(group.branch_kind()), species));
+  started.values = values_of(group, SpeciesView(*this, species, started.branches));
+  started.topology = contact_leaves(group);
+  started.contacts = std::make_unique<ContactSplat>(
+      setting_.lattice, setting_.kernel, *started.branches, started.values, group.value_count(),
+      group.moments[0]->line_integral, setting_.wanted_leaves(group.halo), started.topology);
 }
 
 void FrameContext::splat(const SplatGroup& group, const Started& started, std::size_t bytes_per_leaf,
@@ -119,22 +153,28 @@ void FrameContext::splat(const SplatGroup& group, const Started& started, std::s
   check(started.topology->leaf_count(), group, bytes_per_leaf, sums.leaf_count());
   if (started.contacts) {
     started.contacts->sums(consumer(group, started.topology, sums));
-  } else if (group.buffered()) {
-    keep(splat_in_double(group, started), {group.moments.begin(), group.moments.begin() + group.asked_for}, sums);
-  } else if (group.kind() == Moment::Kind::second_moments) {
-    splat_second_moments(setting_.lattice, setting_.kernel, *buckets_, *started.topology, started.values,
-                         consumer(group, started.topology, sums));
+  } else if (group.species()) {
+    splat_particles(group, started, keep_points(*buckets_, particles().species, *group.species()), sums);
   } else {
-    splat_particles_fast(setting_.lattice, setting_.kernel, *buckets_, *started.topology, started.values,
-                         group.weight_of, consumer(group, started.topology, sums));
+    splat_particles(group, started, *buckets_, sums);
   }
 }
 
-LeafBuffers FrameContext::splat_in_double(const SplatGroup& group, const Started& started) const {
-  const auto splat = group.kind() == Moment::Kind::particle_gradients ? splat_particle_gradients
-                     : group.kind() == Moment::Kind::particle_squares ? splat_particle_squares
-                                                                      : splat_particles;
-  return splat(setting_.lattice, setting_.kernel, *buckets_, started.topology, started.values, group.value_count());
+void FrameContext::splat_particles(const SplatGroup& group, const Started& started, const Buckets& buckets,
+                                   WindowSums& sums) {
+  if (group.buffered()) {
+    const auto splat = group.kind() == Moment::Kind::particle_gradients ? splat_particle_gradients
+                       : group.kind() == Moment::Kind::particle_squares ? splat_particle_squares
+                                                                        : grainvdb::splat_particles;
+    keep(splat(setting_.lattice, setting_.kernel, buckets, started.topology, started.values, group.value_count()),
+         {group.moments.begin(), group.moments.begin() + group.asked_for}, sums);
+  } else if (group.kind() == Moment::Kind::second_moments) {
+    splat_second_moments(setting_.lattice, setting_.kernel, buckets, *started.topology, started.values,
+                         consumer(group, started.topology, sums));
+  } else {
+    splat_particles_fast(setting_.lattice, setting_.kernel, buckets, *started.topology, started.values, group.weight_of,
+                         consumer(group, started.topology, sums));
+  }
 }
 
 LeafConsumer FrameContext::consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology,
@@ -214,34 +254,54 @@ Outside FrameContext::outside() const {
 }
 
 std::vector<Vec3> FrameContext::interpolate_frame(const Moment& numerator, const Moment& denominator) const {
+  return interpolate_frame(numerator, denominator, particles().position);
+}
+
+std::vector<Vec3> FrameContext::interpolate_frame(const Moment& numerator, const Moment& denominator,
+                                                  const Columns3& position) const {
+  return sample_trilinear(setting_.lattice, ratio_of_frame(numerator, denominator), position);
+}
+
+RatioView FrameContext::ratio_of_frame(const Moment& numerator, const Moment& denominator) const {
   const Place n = places_.at(numerator.name);
   const Place d = places_.at(denominator.name);
-  return sample_trilinear(setting_.lattice, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel, outside()},
-                          particles().position);
+  return {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel, outside()};
 }
 
 std::vector<double> FrameContext::deviation_factors(const Moment& denominator) const {
+  return deviation_factors(denominator, {});
+}
+
+std::vector<double> FrameContext::deviation_factors(const Moment& denominator,
+                                                    std::span<const std::uint8_t> wanted) const {
   const Place d = places_.at(denominator.name);
   std::vector<double> weight(particles().size());
   denominator.values(*this, weight);
   return grainvdb::deviation_factors(setting_.lattice, setting_.kernel, particles().position, weight,
-                                     d.buffers->blocks(), d.channel, outside());
+                                     d.buffers->blocks(), d.channel, outside(), wanted);
 }
 
 std::vector<Vec3> FrameContext::interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
                                                           std::array<bool, 3> homogeneous) const {
-  const Place n = places_.at(numerator.name);
-  const Place d = places_.at(denominator.name);
-  return sample_profile(setting_.lattice, {n.buffers->blocks(), n.channel, d.buffers->blocks(), d.channel, outside()},
-                        particles().position, homogeneous);
+  return interpolate_frame_profile(numerator, denominator, homogeneous, particles().position);
+}
+
+std::vector<Vec3> FrameContext::interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
+                                                          std::array<bool, 3> homogeneous,
+                                                          const Columns3& position) const {
+  return sample_profile(setting_.lattice, ratio_of_frame(numerator, denominator), position, homogeneous);
 }
 
 std::vector<Vec3> FrameContext::interpolate_mean(const Moment& numerator, const Moment& denominator) const {
+  return interpolate_mean(numerator, denominator, particles().position);
+}
+
+std::vector<Vec3> FrameContext::interpolate_mean(const Moment& numerator, const Moment& denominator,
+                                                 const Columns3& position) const {
   const LeafBlocks& values = means_->values();
   return sample_trilinear(
       setting_.lattice,
-      {values, means_->first_channel(numerator), values, means_->first_channel(denominator), outside()},
-      particles().position);
+      {values, means_->first_channel(numerator), values, means_->first_channel(denominator), outside()}, position);
 }
 
 }  // namespace grainvdb

@@ -2,10 +2,13 @@
 /// One frame on one lattice, on its way through the passes of a sweep: bucketed once, splatted pass by pass, sampled in
 /// between.
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "average/window_sums.hpp"
@@ -60,6 +63,15 @@ class FrameContext : public FrameView {
   std::vector<Vec3> interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
                                               std::array<bool, 3> homogeneous) const override;
 
+  /// The same at these positions, and of the particles that are wanted (deviation_factors).
+  std::vector<Vec3> interpolate_frame(const Moment& numerator, const Moment& denominator,
+                                      const Columns3& position) const;
+  std::vector<Vec3> interpolate_mean(const Moment& numerator, const Moment& denominator,
+                                     const Columns3& position) const;
+  std::vector<double> deviation_factors(const Moment& denominator, std::span<const std::uint8_t> wanted) const;
+  std::vector<Vec3> interpolate_frame_profile(const Moment& numerator, const Moment& denominator,
+                                              std::array<bool, 3> homogeneous, const Columns3& position) const;
+
  private:
   /// Where a finished moment of this frame lies.
   struct Place {
@@ -68,20 +80,24 @@ class FrameContext : public FrameView {
   };
   /// A group before its splat: its values, [entry][value], and what they are splatted onto.
   struct Started {
-    std::vector<double> values;
-    std::unique_ptr<ContactSplat> contacts;
-    std::shared_ptr<const Topology> topology;
+    std::vector<double> values{};
+    std::shared_ptr<const HalfBranches> branches{};  // of a species
+    std::unique_ptr<ContactSplat> contacts{};
+    std::shared_ptr<const Topology> topology{};
   };
 
   Started start(const SplatGroup& group, std::size_t bytes_per_leaf);
+  void start_contacts(const SplatGroup& group, Started& started);
+  void start_contacts_of_species(const SplatGroup& group, Started& started);
   void bucket_particles();
   const std::shared_ptr<const Topology>& particle_leaves(const Halo& halo);
-  std::vector<double> values_of(const SplatGroup& group) const;
+  const std::shared_ptr<const Topology>& contact_leaves(const SplatGroup& group);
+  void splat_particles(const SplatGroup& group, const Started& started, const Buckets& buckets, WindowSums& sums);
   void splat(const SplatGroup& group, const Started& started, std::size_t bytes_per_leaf, WindowSums& sums);
-  LeafBuffers splat_in_double(const SplatGroup& group, const Started& started) const;
   /// What takes the sums of a group's leaves: the sums of the window, and a buffer for the moments that are kept.
   LeafConsumer consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology, WindowSums& sums);
   void keep(LeafBuffers buffers, const std::vector<MomentPtr>& moments, WindowSums& sums);
+  RatioView ratio_of_frame(const Moment& numerator, const Moment& denominator) const;
   void combine_voxels(const MomentPtr& moment, WindowSums& sums);
   Outside outside() const;
   void check(std::size_t leaves, const SplatGroup& group, std::size_t bytes_per_leaf, std::size_t summed_leaves) const;
@@ -92,6 +108,7 @@ class FrameContext : public FrameView {
   const MomentMeans* means_ = nullptr;
   std::optional<Buckets> buckets_;
   std::map<const Region*, std::shared_ptr<const Topology>> topologies_;  // of the particles
+  std::map<std::pair<BranchKind, const Region*>, std::shared_ptr<const Topology>> contact_topologies_;
   std::map<const SplatGroup*, Started> started_;
   std::vector<std::unique_ptr<LeafBuffers>> buffers_;
   std::map<std::string, Place> places_;

@@ -30,6 +30,7 @@ void apply_selection(const Selection& selection, const Box& box, Particles& part
   keep_rows(particles.radius, rows);
   keep_rows(particles.mass, rows);
   keep_rows(particles.type, rows);
+  keep_rows(particles.species, rows);
 }
 
 void use_forces_of_run(const Pipeline& pipeline, Frame& frame) {
@@ -42,7 +43,8 @@ void use_forces_of_run(const Pipeline& pipeline, Frame& frame) {
 Material make_material(Frame frame, const Pipeline& pipeline, const std::set<BranchKind>& wanted) {
   Material material;
   use_forces_of_run(pipeline, frame);
-  material.branches = make_branch_sets(frame, pipeline, species_of_particles(frame, pipeline.species), wanted);
+  frame.particles.species = species_of_particles(frame, pipeline.species);
+  material.branches = make_branch_sets(frame, pipeline, wanted);
   material.file = std::move(frame.file);
   material.step = frame.step;
   material.box = frame.box;

@@ -4,7 +4,7 @@
 
 namespace grainvdb {
 
-void add_measure(Schema& schema);
+void add_measure(Schema& schema, const StageRegistry& registry);
 
 /// Refuses options that do not go together (ConfigError).
 void check_measure(const Pipeline& pipeline);

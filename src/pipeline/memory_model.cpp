@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -72,29 +74,59 @@ void take_larger(double& a, double b) {
   a = std::max(a, b);
 }
 
+/// What groups of splats keep of every frame in flight, for each particle and contact and for each image of one.
+struct GroupMemory {
+  double particle_values = 0, contact = 0, contact_image = 0;
+
+  void add(const Pipeline& pipeline, const SplatGroup& group, bool ahead) {
+    const double values = 8.0 * group.value_count();
+    if (group.kind() == Moment::Kind::contacts) {
+      contact += 2 * (values + branch_plan + (group.species() ? half_branch + sizeof(int) : 0));
+      contact_image += pieces(pipeline, group) * (bucket_entry + 1 + 4.0 * (3 + group.value_count()));
+    } else if (ahead) {
+      particle_values += values;
+    }
+  }
+};
+
+/// Groups of a species have its own particles and contacts: together species have no more than all of one that has
+/// the most of each.
+GroupMemory memory_of_groups(const std::map<std::optional<int>, GroupMemory>& groups) {
+  GroupMemory all, most;
+  for (const auto& [species, memory] : groups) {
+    if (!species) {
+      all = memory;
+      continue;
+    }
+    most.particle_values = std::max(most.particle_values, memory.particle_values);
+    most.contact = std::max(most.contact, memory.contact);
+    most.contact_image = std::max(most.contact_image, memory.contact_image);
+  }
+  return {all.particle_values + most.particle_values, all.contact + most.contact,
+          all.contact_image + most.contact_image};
+}
+
 /// What one sweep keeps of every frame in flight, and of the one that is splatted.
 void add_sweep(const Plan& plan, const Pipeline& pipeline, std::size_t sweep, MemoryModel& model, double& buffered) {
   const bool reads_all = pipeline.input.on_error == OnError::skip_frame && sweep == 0;
   const ColumnSet columns = reads_all ? all_columns(plan) : plan.sweeps[sweep].columns;
-  double particle = column_bytes(columns), particle_values = 0;
-  double contact = 0, contact_image = 0, kept = 0;
+  double particle = column_bytes(columns), kept = 0;
+  bool by_species = false;
+  std::map<std::optional<int>, GroupMemory> memory;
   take_larger(model.per_particle_read, particle);
+  if (!pipeline.species.empty()) particle += sizeof(int);
   const SweepGroups groups = group_moments(plan, sweep);
   for (const SweepGroups::Pass& pass : groups.passes) {
     for (const SplatGroup& group : pass.groups) {
       kept += 8.0 * group.buffered_channels();
       const bool ahead = &pass == &groups.passes.front() && group.of_frame_alone();
-      const double values = 8.0 * group.value_count();
-      if (group.kind() == Moment::Kind::contacts) {
-        contact += 2 * (values + branch_plan);
-        contact_image += pieces(pipeline, group) * (bucket_entry + 1 + 4.0 * (3 + group.value_count()));
-      } else if (ahead) {
-        particle_values += values;
-      }
+      memory[group.species()].add(pipeline, group, ahead);
+      by_species = by_species || (group.species() && group.kind() != Moment::Kind::contacts);
     }
     for (const MomentPtr& m : pass.voxelwise)
       if (groups.kept.contains(m->name)) kept += 8.0 * m->channels;
   }
+  auto [particle_values, contact, contact_image] = memory_of_groups(memory);
   if (columns.has(Column::contacts) || columns.has(Column::wall_contacts)) {
     contact += 2 * (half_branch + (pipeline.species.empty() ? 0 : sizeof(int)));
     take_larger(model.per_contact_read, contact_bytes(pipeline));
@@ -103,7 +135,7 @@ void add_sweep(const Plan& plan, const Pipeline& pipeline, std::size_t sweep, Me
   if (columns.has(Column::force)) particle -= std::min(force_bytes, particle_values);
   particle += particle_values;
   take_larger(model.per_particle, particle);
-  take_larger(model.per_particle_image, bucket_entry);
+  take_larger(model.per_particle_image, by_species ? 2 * bucket_entry : bucket_entry);
   take_larger(model.per_contact, contact);
   take_larger(model.per_contact_image, contact_image);
   take_larger(buffered, kept);

@@ -286,7 +286,7 @@ Schema make_schema(const StageRegistry& registry) {
   add_output(schema, registry);
   add_trace(schema, registry);
   add_stages(schema, registry);
-  add_measure(schema);
+  add_measure(schema, registry);
   add_limits(schema);
   return schema;
 }

@@ -7,8 +7,8 @@
 
 namespace grainvdb {
 
-/// The number of the species of every particle of the frame, -1 for none; nothing where there are no species. Throws
-/// InputError for a particle that belongs to two.
+/// The number of the species of every particle of the frame, as Particles has it. Throws InputError for a particle that
+/// belongs to two.
 std::vector<int> species_of_particles(const Frame& frame, const std::vector<Species>& species);
 
 /// "small: types 1, 2 and diameter 0.001 to 0.002".

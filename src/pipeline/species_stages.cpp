@@ -122,23 +122,12 @@ StageRegistry with_species(const StageRegistry& registry, const Pipeline& pipeli
 }
 
 MomentPtr moment_of_species(const MomentPtr& all, const Species& species, int index) {
-  const bool contacts = all->kind == Moment::Kind::contacts;
-  if (!contacts && all->kind != Moment::Kind::particles)
+  if (all->kind != Moment::Kind::contacts && all->kind != Moment::Kind::particles)
     throw std::logic_error("the moment '" + all->name + "' has no part that is that of a species");
   Moment m = *all;
   m.name += " of species " + species.name;
-  // A reference would have to be the velocity of the species, which is not there in leaves that it does not reach.
-  m.weight.reset();
-  if (!contacts) m.columns |= species.columns();
-  m.values = [all, species, index, contacts](const FrameView& view, std::span<double> q) {
-    all->values(view, q);
-    const auto width = static_cast<std::size_t>(all->value_count());
-    for (std::size_t n = 0; n < q.size() / width; ++n) {
-      const bool is_in =
-          contacts ? view.branches(all->branch_kind).species[n] == index : species.contains(view.particles(), n);
-      if (!is_in) std::fill_n(q.begin() + static_cast<std::ptrdiff_t>(n * width), width, 0.0);
-    }
-  };
+  m.species = index;
+  if (m.weight) m.weight = moment_of_species(m.weight, species, index);
   return std::make_shared<const Moment>(std::move(m));
 }
 

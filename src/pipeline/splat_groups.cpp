@@ -33,12 +33,13 @@ SweepGroups::Pass group_pass(const Plan& plan, const std::vector<MomentPtr>& pas
     const auto same = [&](const SplatGroup& g) {
       const Moment& other = *g.moments[0];
       return other.kind == m->kind && m->kind != Moment::Kind::second_moments && other.branch_kind == m->branch_kind &&
-             other.line_integral == m->line_integral && other.in_double == m->in_double;
+             other.line_integral == m->line_integral && other.in_double == m->in_double && other.species == m->species;
     };
     auto it = std::find_if(result.groups.begin(), result.groups.end(), same);
     if (it == result.groups.end()) it = result.groups.insert(it, SplatGroup{});
     it->moments.push_back(m);
   }
+  std::stable_partition(result.groups.begin(), result.groups.end(), [](const SplatGroup& g) { return !g.species(); });
   for (SplatGroup& group : result.groups) {
     group.asked_for = group.moments.size();
     for (const MomentPtr& m : group.moments) {
@@ -52,8 +53,8 @@ SweepGroups::Pass group_pass(const Plan& plan, const std::vector<MomentPtr>& pas
 
 }  // namespace
 
-std::size_t SplatGroup::entries(const FrameView& frame) const {
-  return kind() == Moment::Kind::contacts ? frame.branches(branch_kind()).size() : frame.particles().size();
+std::size_t SplatGroup::entries(const FrameView& view) const {
+  return kind() == Moment::Kind::contacts ? view.branches(branch_kind()).size() : view.particles().size();
 }
 
 bool SplatGroup::buffered() const {

@@ -1,6 +1,7 @@
 #pragma once
 /// The moments of a sweep, sorted by what splats them together.
 #include <cstddef>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -21,8 +22,10 @@ struct SplatGroup {
 
   Moment::Kind kind() const { return moments[0]->kind; }
   BranchKind branch_kind() const { return moments[0]->branch_kind; }
-  /// How many particles or half branches of a frame it sums over.
-  std::size_t entries(const FrameView& frame) const;
+  /// The species whose particles or half branches alone it sums over.
+  std::optional<int> species() const { return moments[0]->species; }
+  /// How many particles or half branches it sums over of what it sees of a frame.
+  std::size_t entries(const FrameView& view) const;
   int value_count() const { return static_cast<int>(weight_of.size()); }
   /// Whether a buffer for all its channels is needed: those are added up in double precision.
   bool buffered() const;
@@ -33,7 +36,7 @@ struct SplatGroup {
 
 struct SweepGroups {
   struct Pass {
-    std::vector<SplatGroup> groups;
+    std::vector<SplatGroup> groups;    ///< those of species behind those of all material
     std::vector<MomentPtr> voxelwise;  ///< made of others after the splats
   };
   std::vector<Pass> passes;

@@ -74,6 +74,8 @@ void BranchSet::plan() {
 
 /// The length of the branch that a half branch and the next make up, or 0 if they do not or are better left apart.
 double BranchSet::whole_length(std::size_t b) const {
+  // The sums of species, which have the halves apart, must add up to that of all to rounding: the terms are the same.
+  if (!branches_.species.empty() && branches_.species[b] != branches_.species[b + 1]) return 0;
   const Vec3 a1 = half(b), a2 = half(b + 1);
   const Vec3 l{a1[0] - a2[0], a1[1] - a2[1], a1[2] - a2[2]};
   const double length = std::sqrt(dot(l, l)), length1 = std::sqrt(dot(a1, a1)), length2 = std::sqrt(dot(a2, a2));

@@ -70,6 +70,15 @@ void ContactLeaves::sums(const Topology& topology, const LeafConsumer& consume) 
   });
 }
 
+void ContactLeaves::sums_where_reached(const Topology& topology, const LeafConsumer& consume) const {
+  tbb::enumerable_thread_specific<ContactWork> works;
+  parallel_for(topology.leaf_count(), [&](std::size_t l) {
+    ContactWork& work = works.local();
+    run(topology.origin(l), reached(topology.origin(l), work), work);
+    consume(l, work.values.data());
+  });
+}
+
 /// Of the branches in work.cells.
 void ContactLeaves::collect(const Coord& leaf, ContactWork& work) const {
   LeafBranches& to = work.candidates;

@@ -32,6 +32,8 @@ class ContactLeaves {
 
   /// The sums by the rules of the set.
   void sums(const Topology& topology, const LeafConsumer& consume) const;
+  /// The same at the voxels of a topology that has more of them than the branches reach: 0 at those.
+  void sums_where_reached(const Topology& topology, const LeafConsumer& consume) const;
 
  private:
   void find_scales();

@@ -50,13 +50,21 @@ struct ContactSplat::Parts {
 };
 
 ContactSplat::ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
-                           std::span<const double> q, int channels, LineIntegral method, const Region* wanted) {
+                           std::span<const double> q, int channels, LineIntegral method, const Region* wanted)
+    : ContactSplat(lattice, kernel, branches, q, channels, method, wanted, std::make_shared<const Topology>()) {
+  has_more_voxels_ = false;
+  if (parts_) topology_ = parts_->leaves.topology(wanted);
+}
+
+ContactSplat::ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
+                           std::span<const double> q, int channels, LineIntegral method, const Region* wanted,
+                           std::shared_ptr<const Topology> onto)
+    : topology_(std::move(onto)) {
   if (channels < 1 || q.size() != branches.size() * static_cast<std::size_t>(channels))
     throw std::invalid_argument("the splat needs one value per branch and channel");
   if (branches.size() == 0) return;
   parts_ = std::make_unique<Parts>(lattice, kernel, branches, BranchValues{q, static_cast<std::size_t>(channels)},
                                    method, wanted);
-  topology_ = parts_->leaves.topology(wanted);
 }
 
 ContactSplat::~ContactSplat() = default;
@@ -65,6 +73,8 @@ void ContactSplat::sums(const LeafConsumer& consume) const {
   if (!parts_) return;
   if (parts_->method.method == LineIntegral::Method::exact) {
     parts_->sum_exactly(*topology_, consume);
+  } else if (has_more_voxels_) {
+    parts_->leaves.sums_where_reached(*topology_, consume);
   } else {
     parts_->leaves.sums(*topology_, consume);
   }

@@ -53,6 +53,10 @@ template <class To>
 void FastLeafSplat::run_to(const Coord& origin, const LeafMask& active, LeafWork& work, std::span<float* const> far,
                            const To& to) const {
   gather_candidates(buckets_, origin, cutoff_, work.candidates);
+  if (work.candidates.count == 0) {  // a species is not everywhere that there are voxels
+    for (std::size_t c = 0; c < channels_; ++c) std::fill_n(to(c), leaf_size, 0);
+    return;
+  }
   records_.gather(origin, work.candidates, work.records);
   LeafSplat leaf{&work.candidates, work.records.values.data(), records_.stride(), static_cast<int>(channels_), voxel()};
   leaf.to = far;

@@ -125,7 +125,7 @@ struct Work {
 class OwnWeight {
  public:
   OwnWeight(const Lattice& lattice, const LucyKernel& kernel, const Columns3& position, std::span<const double> weight,
-            const LeafBlocks& total, int channel, Outside outside)
+            const LeafBlocks& total, int channel, Outside outside, std::span<const std::uint8_t> wanted)
       : lattice_(lattice),
         kernel_(kernel),
         position_(position),
@@ -133,6 +133,7 @@ class OwnWeight {
         total_(total),
         channel_(channel),
         outside_(outside),
+        wanted_(wanted),
         // The voxels around a particle may lie a voxel outside the stored period.
         buckets_(bin_points(lattice, position, kernel.cutoff() + lattice.voxel())),
         largest_(weight.empty() ? 1 : *std::max_element(weight.begin(), weight.end())),
@@ -157,7 +158,7 @@ class OwnWeight {
     const Coord& origin = buckets_.cells[cell];
     bool begun = false;
     for (std::size_t e = buckets_.start[cell]; e < buckets_.start[cell + 1]; ++e) {
-      if (!in_block(e, origin, box) || !is_stored(e)) continue;
+      if (!is_wanted(e) || !in_block(e, origin, box) || !is_stored(e)) continue;
       if (!begun) pick(box, work);
       begun = true;
       factors[buckets_.point[e]] = factor(e, origin, work);
@@ -173,6 +174,8 @@ class OwnWeight {
   static std::size_t entry(const Work& work, std::size_t near) {
     return work.candidates.entry[static_cast<std::size_t>(work.near.at[near])];
   }
+
+  bool is_wanted(std::size_t e) const { return wanted_.empty() || wanted_[buckets_.point[e]] != 0; }
 
   bool in_block(std::size_t e, const Coord& origin, const VoxelBox& box) const {
     const auto along = [&](std::size_t axis, int first) {
@@ -239,6 +242,7 @@ class OwnWeight {
   const LeafBlocks& total_;
   int channel_;
   Outside outside_;
+  std::span<const std::uint8_t> wanted_;
   Buckets buckets_;
   double largest_;  // weight
   double cutoff_;   // in voxels
@@ -249,8 +253,8 @@ class OwnWeight {
 
 std::vector<double> deviation_factors(const Lattice& lattice, const LucyKernel& kernel, const Columns3& position,
                                       std::span<const double> weight, const LeafBlocks& total, int channel,
-                                      Outside outside) {
-  const OwnWeight own(lattice, kernel, position, weight, total, channel, outside);
+                                      Outside outside, std::span<const std::uint8_t> wanted) {
+  const OwnWeight own(lattice, kernel, position, weight, total, channel, outside, wanted);
   std::vector<double> factors(weight.size());
   tbb::enumerable_thread_specific<Work> work([&] { return Work(*total.topology); });
   parallel_for(own.cells(), [&](std::size_t cell) { own.run(cell, work.local(), factors); });

@@ -66,15 +66,21 @@ class ContactSplat {
   /// std::invalid_argument when q has another size.
   ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
                std::span<const double> q, int channels, LineIntegral method, const Region* wanted = nullptr);
+  /// The same at the voxels of `onto`, among which are those that the branches reach in its leaves.
+  ContactSplat(const Lattice& lattice, const LucyKernel& kernel, const HalfBranches& branches,
+               std::span<const double> q, int channels, LineIntegral method, const Region* wanted,
+               std::shared_ptr<const Topology> onto);
   ~ContactSplat();
 
   const std::shared_ptr<const Topology>& topology() const { return topology_; }
+  /// Without branches nothing is handed over.
   void sums(const LeafConsumer& consume) const;
 
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;  // nothing without branches
-  std::shared_ptr<const Topology> topology_ = std::make_shared<const Topology>();
+  std::shared_ptr<const Topology> topology_;
+  bool has_more_voxels_ = true;  // than the branches reach
 };
 
 }  // namespace grainvdb

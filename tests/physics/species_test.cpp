@@ -12,6 +12,7 @@
 
 #include "grainvdb/kernel.hpp"
 #include "grainvdb/mask.hpp"
+#include "grainvdb/measurement.hpp"
 #include "support/lattice_packing.hpp"
 #include "support/reference.hpp"
 #include "support/run_in_memory.hpp"
@@ -211,13 +212,11 @@ TEST(Species, TwoSublattices) {
   EXPECT_NEAR(volume, expected, (grain_volume_error(cutoff / h) + e) * expected);
 }
 
-// The terms are the same numbers in the same order. Velocity is not among them: that of all grains is summed about a
-// local reference.
+// The terms are the same numbers in the same order.
 TEST(Species, OfAllGrainsIsTheWholeToTheLastBit) {
   const Scene scene = periodic_scene();
-  const std::vector<std::string> fields{"phi",         "phi_error",      "density",        "mean_diameter",
-                                        "temperature", "contact_stress", "kinetic_stress", "stress",
-                                        "stress_error"};
+  const std::vector<std::string> fields{"phi",         "phi_error",      "density",        "velocity", "mean_diameter",
+                                        "temperature", "contact_stress", "kinetic_stress", "stress",   "stress_error"};
   Pipeline p = scene.pipeline(fields);
   set_option(p, "contact_stress", "line_integral", std::string("adaptive"));
   p.blocks = 3;
@@ -225,7 +224,6 @@ TEST(Species, OfAllGrainsIsTheWholeToTheLastBit) {
     const bool error = field.ends_with("_error");
     p.fields.push_back(error ? field.substr(0, field.size() - 6) + "_every_error" : field + "_every");
   }
-  p.fields.push_back("velocity_every");
   p.species = {{"every", {}, std::pair<std::int64_t, std::int64_t>(0, 100000), {}}};
   const auto on = [&](std::size_t threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -236,6 +234,44 @@ TEST(Species, OfAllGrainsIsTheWholeToTheLastBit) {
     EXPECT_TRUE(same_bytes(one.only().field(p.fields[fields.size() + k]), one.only().field(fields[k]))) << fields[k];
   for (const std::string& field : p.fields)
     EXPECT_TRUE(same_bytes(one.only().field(field), two.only().field(field))) << field;
+}
+
+// Grains behind a wall are left out and those before it have images, whatever the species; so in planes.
+TEST(Species, ProfilesAddUpBesideAMirror) {
+  const Scene scene = walled_scene();
+  const std::vector<Species> species = by_size_and_wall();
+  Pipeline p = with(scene.pipeline({"phi", "velocity"}), species);
+  p.walls.kernel = WallSpec::Kernel::mirror;
+  p.walls.surfaces = {{Wall::Shape::plane, {0, 0, 0.4}, {0, 0, 1}}};
+  OptionValues options;
+  for (const OptionInfo& option : find_measurement("profile")->options) options[option.name] = option.default_value;
+  options["fields"] = p.fields;
+  p.measure["profile"] = options;
+  const Result result = run(p, scene.frames);
+  ASSERT_EQ(result.report.tables.size(), 1U);
+  const auto column = [&](const std::string& name) -> const std::vector<double>& {
+    for (const TableColumn& c : result.report.tables[0].columns)
+      if (c.name == name) return c.values;
+    throw std::out_of_range(name);
+  };
+  double fastest = 0;
+  for (const Frame& f : scene.frames)
+    for (const double v : f.particles.velocity[0]) fastest = std::max(fastest, std::abs(v));
+  std::size_t planes = 0;
+  for (std::size_t n = 0; n < column("z").size(); ++n) {
+    const double phi = column("phi")[n];
+    if (!(phi > 0)) continue;
+    double sum = 0, flux = 0;
+    for (const Species& s : species) {
+      const double part = column("phi_" + s.name)[n];
+      sum += part;
+      if (part > 0) flux += part * column("velocity_" + s.name + "_x")[n];
+    }
+    EXPECT_NEAR(sum, phi, 2 * e * phi) << n;
+    EXPECT_NEAR(flux, phi * column("velocity_x")[n], 6.01 * e * phi * fastest) << n;
+    ++planes;
+  }
+  EXPECT_GT(planes, 10U);
 }
 
 TEST(Species, RefusesAGrainOfTwo) {

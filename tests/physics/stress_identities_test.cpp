@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "bin/branches.hpp"
 #include "grainvdb/kernel.hpp"
 #include "support/kernel_sums.hpp"
 #include "support/reference.hpp"
@@ -111,6 +112,25 @@ TEST(StressIdentities, StaticColumn) {
       expected += columns.weight[n] * marginal_cdf((columns.height[n] - z) / c);
     EXPECT_NEAR(force, expected, 1e-4 * total) << "z = " << z;
     EXPECT_GT(expected, 10 * 1e-4 * total);
+  }
+}
+
+// The same to rounding, where nothing is summed over voxels: ∫∫ ∫₀¹ W(x - x_α + s a) ds dx dy is the difference of the
+// marginal's integral between the two ends of a branch, over a_z.
+TEST(StressIdentities, StaticColumnToRounding) {
+  const StaticColumns columns(31);
+  const LucyKernel kernel(3);
+  const HalfBranches branches = half_branches(columns.frame);
+  const double total = columns.total_weight();
+  for (double z = 3.35; z < 14; z += 0.25) {
+    double force = 0, expected = 0;
+    for (std::size_t b = 0; b < branches.size(); ++b) {
+      const double start = branches.start[2][b], arm = branches.arm[2][b];
+      force += branches.force[2][b] * (kernel.marginal_integral(z - start + arm) - kernel.marginal_integral(z - start));
+    }
+    for (std::size_t n = 0; n < columns.height.size(); ++n)
+      expected += columns.weight[n] * marginal_cdf((columns.height[n] - z) / 3);
+    EXPECT_NEAR(force, expected, 1e-10 * total) << "z = " << z;
   }
 }
 

@@ -158,5 +158,31 @@ TEST(Buckets, RefusesWhatCannotBeIndexed) {
   EXPECT_THROW(bin_points(periodic, points({{0, bad[1], 0}}), 1), std::invalid_argument);
 }
 
+// What is kept is what a search for these points alone finds, to the last bit.
+TEST(Buckets, KeepSomePoints) {
+  Box box;
+  box.hi = {4, 4, 4};
+  box.periodic = {true, true, false};
+  const Lattice lattice = lattice_of(0.25, {0, 0, 0}, box);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(0, 4);
+  std::vector<Vec3> all, some;
+  std::vector<int> number;
+  for (int p = 0; p < 300; ++p) {
+    all.push_back({place(random), place(random), place(random)});
+    number.push_back(p % 7 == 0 ? 2 : p % 3 - 1);
+    if (number.back() == 2) some.push_back(all.back());
+  }
+  const Buckets kept = keep_points(bin_points(lattice, points(all), 0.6), number, 2);
+  const Buckets expected = bin_points(lattice, points(some), 0.6);
+  expect_well_formed(kept);
+  EXPECT_EQ(kept.cells, expected.cells);
+  EXPECT_EQ(kept.start, expected.start);
+  EXPECT_EQ(kept.point, expected.point);
+  EXPECT_EQ(kept.index, expected.index);
+  EXPECT_EQ(kept.local, expected.local);
+  EXPECT_EQ(keep_points(expected, std::vector<int>(some.size(), -1), 0).start, std::vector<std::size_t>{0});
+}
+
 }  // namespace
 }  // namespace grainvdb::buckets_test

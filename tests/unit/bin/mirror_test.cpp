@@ -42,6 +42,7 @@ TEST(Mirror, ReflectsVectorsAndPseudoVectors) {
   p.velocity = {{{4}, {5}, {6}}};
   p.angular_velocity = {{{7}, {8}, {9}}};
   p.type = {3};
+  p.species = {1};
   Mirror({plane({0, 0, 1}, {0, 0, 1})}, 5).add_images(p);
   ASSERT_EQ(p.size(), 2U);
   EXPECT_EQ(row(p.position, 1), (Vec3{1, 2, -1}));
@@ -50,6 +51,7 @@ TEST(Mirror, ReflectsVectorsAndPseudoVectors) {
   EXPECT_EQ(p.id[1], 1);
   EXPECT_EQ(p.radius[1], p.radius[0]);
   EXPECT_EQ(p.type[1], 3);
+  EXPECT_EQ(p.species, (std::vector<int>{1, 1}));
   EXPECT_TRUE(p.mass.empty());
 }
 
@@ -118,10 +120,12 @@ TEST(Inside, LeavesOutWhatHasItsCentreBehind) {
   const WallDomain domain({plane({0, 0, 0}, {0, 0, 1}), plane({0, 0, 9}, {0, 0, -2})});
   Particles p = at({{0, 0, -0.1}, {0, 0, 0}, {0, 0, 9}, {0, 0, 9.1}, {5, 5, 5}});
   p.velocity = p.position;
+  p.species = {0, 1, 0, 1, -1};
   keep_inside(domain, p);
   EXPECT_EQ(p.id, (std::vector<std::int64_t>{2, 3, 5}));
   EXPECT_EQ(p.velocity[2], (std::vector<double>{0, 9, 5}));
   EXPECT_EQ(p.radius.size(), 3U);
+  EXPECT_EQ(p.species, (std::vector<int>{1, 0, -1}));
   EXPECT_TRUE(p.mass.empty());
 }
 

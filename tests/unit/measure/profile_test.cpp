@@ -84,6 +84,37 @@ TEST(Profile, NeedsWhatItsRatiosAreMadeOf) {
   EXPECT_FALSE(info.needs(options_for({"phi"})).particles);
 }
 
+TEST(Profile, FieldsOfSpeciesAreWeighedByTheirOwnGrains) {
+  const MeasurementInfo info = profile_measurements().front();
+  EXPECT_EQ(info.needs(options_for({"phi_a", "stress_a", "velocity_b"})).fields,
+            (std::vector<std::string>{"phi_a", "phi_b", "stress_a", "velocity_b"}));
+  // φ_a grows along x, φ_b is what is left of ½; b moves with x.
+  std::vector<OutputFields> outputs;
+  outputs.push_back(testing::synthetic_output(lattice, {0, 0, 0}, {7, 3, 2},
+                                              {testing::scalar("phi", [](const Vec3&) { return 0.5; }),
+                                               testing::scalar("phi_a", [](const Vec3& x) { return 0.1 * x[0]; }),
+                                               testing::scalar("phi_b", [](const Vec3& x) { return 0.5 - 0.1 * x[0]; }),
+                                               {"velocity_b", 3, [](const Vec3& x, std::span<double> out) {
+                                                  out[0] = x[0];
+                                                  out[1] = out[2] = 0;
+                                                }}}));
+  const Table table = profile_of(options_for({"phi", "phi_a", "phi_b", "velocity_b"}), outputs);
+  double weight = 0, sum = 0;
+  for (int i = 0; i < 8; ++i) {
+    const double x = lattice.centre(0, i);
+    weight += 0.5 - 0.1 * x;
+    sum += (0.5 - 0.1 * x) * x;
+  }
+  ASSERT_EQ(column_of(table, "z").size(), 3U);
+  for (std::size_t n = 0; n < 3; ++n) {
+    EXPECT_NEAR(column_of(table, "phi_a")[n] + column_of(table, "phi_b")[n], column_of(table, "phi")[n], 1e-7);
+    EXPECT_NEAR(column_of(table, "velocity_b_x")[n], sum / weight, 1e-6);
+  }
+  const auto column =
+      std::find_if(table.columns.begin(), table.columns.end(), [](const TableColumn& c) { return c.name == "phi_b"; });
+  EXPECT_EQ(column->description, "packing fraction, of species b alone, average");
+}
+
 TEST(Profile, OffersNoMeanOfAxes) {
   const MeasurementInfo info = profile_measurements().front();
   for (const OptionInfo& option : info.options) {

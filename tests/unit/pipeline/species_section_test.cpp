@@ -104,6 +104,19 @@ TEST(SpeciesSection, RefusesWhatCannotBeToldApart) {
             3U);
 }
 
+TEST(SpeciesSection, ProfilesTakeItsFields) {
+  const auto text = [](const std::string& fields) {
+    return text_with("phi", both) + "measure:\n  profile:\n    fields: [" + fields + "]\n";
+  };
+  const Plan plan = make_plan(load(text("velocity_small, phi_large, mu")));
+  std::vector<std::string> made;
+  for (const Stage* stage : plan.stages) made.push_back(stage->name);
+  EXPECT_THAT(made, testing::IsSupersetOf({"velocity_small", "phi_small", "phi_large", "stress"}));
+  EXPECT_THAT(refusal(text("mu_small")), AllOf(HasSubstr("measure.profile.fields"), HasSubstr("as in phi_small")));
+  EXPECT_THAT(refusal(text("phi_small_error")), HasSubstr("measure.profile.fields"));
+  EXPECT_THAT(refusal(text("phi_tiny")), HasSubstr("measure.profile.fields"));
+}
+
 TEST(SpeciesSection, IsInTheJsonSchema) {
   const auto properties = nlohmann::json::parse(pipeline_schema()).at("properties");
   const auto& species = properties.at("species");
@@ -114,6 +127,8 @@ TEST(SpeciesSection, IsInTheJsonSchema) {
   EXPECT_TRUE(std::regex_match("contact_stress_large", pattern));
   EXPECT_TRUE(std::regex_match("phi_small_error", pattern));
   EXPECT_FALSE(std::regex_match("mu_small", pattern));
+  const auto averaged = properties["measure"]["properties"]["profile"]["properties"]["fields"].dump();
+  EXPECT_THAT(averaged, HasSubstr("stress)_"));
 }
 
 }  // namespace
