@@ -100,13 +100,13 @@ TEST(LatticeVoids, AccountsForEveryGrainAndSite) {
 // which is 2 b of the voids per Δz. The spot model has b_p/b below 1/w.
 TEST(LatticeVoids, GrainsSpreadAsFastAsVoids) {
   const std::size_t layer = 20;
-  const Scene scene = plane(30, 300, true);
+  const Scene scene = plane(300, 140, true);
   const StaggeredLattice& lattice = scene.lattice;
   LatticeVoids model(scene.container, lattice, one_at_a_time(VoidParameters::Entry::spread), 1);
   std::vector<double> of_grain(lattice.size() + 1);  // ways sideways by id
   double of_void = 0;
   std::vector<double> void_spread, grain_spread;  // (Δx)²/(2 Δz) of one after the other
-  watch(model, 4000, [&](std::size_t from, std::size_t to) {
+  watch(model, 40'000, [&](std::size_t from, std::size_t to) {
     if (lattice.layer_of(from) == 0) of_void = 0;
     const double hop = scene.container.box.minimum_image(0, lattice.position(to)[0] - lattice.position(from)[0]);
     of_void += hop;
@@ -119,8 +119,8 @@ TEST(LatticeVoids, GrainsSpreadAsFastAsVoids) {
       grain_spread.push_back(of_grain[id] * of_grain[id] / (2 * static_cast<double>(fallen) * dz));
   });
   const Mean of_voids = mean_of(void_spread), of_grains = mean_of(grain_spread);
-  EXPECT_LT(of_voids.error, 0.04 * b);
-  EXPECT_LT(of_grains.error, 0.04 * b);
+  EXPECT_LT(of_voids.error, 0.015 * b);
+  EXPECT_LT(of_grains.error, 0.015 * b);
   EXPECT_NEAR(of_voids.value, b, 4 * of_voids.error);
   EXPECT_NEAR(of_grains.value, b, 4 * of_grains.error);
   const double ratio = of_grains.value / of_voids.value;
