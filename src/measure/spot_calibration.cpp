@@ -104,7 +104,11 @@ Part widths_part(const OptionValues& o) {
 
 Part correlation_part(const OptionValues& o) {
   return {velocity_correlation_measurement(),
-          {{"lo", o.at("lo")}, {"hi", o.at("hi")}, {"about", o.at("about")}, {"components", o.at("components")}}};
+          {{"lo", o.at("lo")},
+           {"hi", o.at("hi")},
+           {"reach", o.at("reach")},
+           {"about", o.at("about")},
+           {"components", o.at("components")}}};
 }
 
 Part diffusion_part(const OptionValues& o) {
@@ -319,6 +323,7 @@ std::vector<OptionInfo> calibration_options() {
         .default_value = std::vector<std::string>{"y"},
         .help = "of the velocity, whose correlation tells the radius",
         .choices = {"x", "y", "z"}},
+       length_info("reach", "greatest distance of the velocity correlation [length]; 0: eight mean diameters"),
        {.name = "lags",
         .default_value = std::int64_t{4},
         .help = "steps between frames of a window in which grains spread, see 'diffusion'; 0: one window of all",

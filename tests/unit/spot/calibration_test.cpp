@@ -97,6 +97,7 @@ Pipeline of_silo() {
                    {"lowest", 4.0},
                    {"highest", 12.0},
                    {"half_width", 12.0},
+                   {"reach", 6.0},
                    {"lags", std::int64_t{5}},
                    {"flow_from", steady}});
 }
@@ -110,7 +111,6 @@ const Quantity& number(const Table& table, const std::string& name) {
 TEST(Calibration, GivesBackWhatMadeASpotRun) {
   const std::vector<Frame> frames = spot_frames(100);
   const Table t = testing::run(of_silo(), frames).report.tables.front();
-  for (auto& q : t.numbers) printf("%s %g %g\n", q.name.c_str(), q.value, q.error);
   ASSERT_EQ(t.name, "spot_calibration");
   EXPECT_TRUE(t.remarks.empty());
   const SpotParameters made = published();
