@@ -25,8 +25,9 @@ class DensityDrop : public Measurement {
   }
 
   void add(const Frame& frame) override {
+    if (frame.particles.size() == 0) return;
     if (!loosening_.has_reference()) return loosening_.rest(frame);
-    if (frame.step < flow_from_ || frame.particles.size() == 0) return;
+    if (frame.step < flow_from_) return;
     loosening_.add(frame);
     series_.add(frame);
   }

@@ -146,12 +146,13 @@ class SpotCalibration : public Measurement {
   }
 
   void add(const Frame& frame) override {
-    if (!(diameter_ > 0) && frame.particles.size() > 0) diameter_ = 2 * frame.particles.radius.front();
+    if (frame.particles.size() == 0) return;
+    if (!(diameter_ > 0)) diameter_ = 2 * frame.particles.radius.front();
     if (!loosening_.has_reference()) {
       region_at_rest_.add(frame, diameter_);
       return loosening_.rest(frame);
     }
-    if (frame.step < flow_from_ || frame.particles.size() == 0) return;
+    if (frame.step < flow_from_) return;
     for (Measurement* part : {correlation_.get(), diffusion_.get()}) part->add(frame);
     region_.add(frame, diameter_);
     loosening_.add(frame);
@@ -164,7 +165,8 @@ class SpotCalibration : public Measurement {
     for (auto* part : {correlation_.get(), widths_.get()})
       for (Table& table : part->tables()) all.push_back(std::move(table));
     const SpotObservations observed = observations(all);
-    Table table = parameter_table(observed, number_of(all, "velocity_correlation", "amplitude"));
+    Table table = parameter_table(observed, number_of(all, "velocity_correlation", "amplitude"),
+                                  number_of(all, "kinematic_width", "offset"));
     for (Table& part : all) part.name = "spot_calibration_" + part.name;
     all.insert(all.begin(), std::move(table));
     return all;
@@ -218,7 +220,7 @@ class SpotCalibration : public Measurement {
     return 1 - mean_by_time_groups(region_.density()).value / region_at_rest_.density().front();
   }
 
-  Table parameter_table(const SpotObservations& o, const Estimate& amplitude) const {
+  Table parameter_table(const SpotObservations& o, const Estimate& amplitude, const Estimate& offset) const {
     const SpotParameterEstimates p = spot_parameters(o);
     Table t{"spot_calibration", "parameters of the spot model that makes this flow",
             "C(r) = 1 - 3r/4R + r^3/16R^3; s^2 = 2 b z + offset; w = s b/b_p; Q = lambda N/w; c = <phi v>/drop"};
@@ -234,6 +236,7 @@ class SpotCalibration : public Measurement {
     add("radius", o.radius, dimension::length, "R_s of spots, from the velocity correlation");
     add("amplitude", amplitude, dimension::none, "A of the correlation: 1 where spots are all that moves grains");
     add("b", o.b, dimension::length, "of dv/dz = b d2v/dx2, from the widths of profiles");
+    add("offset", offset, {0, 2, 0}, "variance of these widths at the height of the slot");
     add("step_side", p.step, dimension::length, "of a spot along x and y, sqrt(2 b step_up)");
     add("step_up", {o.rise}, dimension::length, "of a spot along z; chosen");
     add("diffusion_length", o.grain_diffusion, dimension::length, "b_p of grains along y");

@@ -129,7 +129,20 @@ std::string line(const std::string& key, const Quantity& q) {
   return text + q.description + '\n';
 }
 
-std::string spots_text(const Table& calibration, double diameter) {
+// Spots that enter all over a slot of width W make profiles wider there by W²/12, beside R²/5 of their size and c²/12
+// of the kernel; DEM's may be narrower than even spots from the middle would make them.
+std::string entry_text(const Pipeline& pipeline, const Table& calibration) {
+  const double slot = number(pipeline, "slot_width"), radius = parameter(calibration, "radius").value;
+  const double halfway = slot * slot / 24 + radius * radius / 5 + pipeline.cutoff * pipeline.cutoff / 12;
+  const Quantity& offset = parameter(calibration, "offset");
+  const bool narrow = offset.value + 2 * offset.error < halfway;
+  std::string text = std::string("  entry: ") + (narrow ? "centre" : "spread") + "  # profiles have a variance of " +
+                     short_number(offset.value);
+  if (std::isfinite(offset.error)) text += " +- " + short_number(offset.error);
+  return text + " at the slot\n";
+}
+
+std::string spots_text(const Pipeline& pipeline, const Table& calibration, double diameter) {
   const Quantity& side = parameter(calibration, "step_side");
   const std::string dx = short_number(side.value);
   std::string text = "\nspots:\n" + line("radius", parameter(calibration, "radius")) +
@@ -139,8 +152,8 @@ std::string spots_text(const Table& calibration, double diameter) {
   const Quantity &b = parameter(calibration, "b"), &volume = parameter(calibration, "volume");
   text += "b = " + short_number(b.value) + (std::isfinite(b.error) ? " +- " + short_number(b.error) : "") + '\n' +
           line("hop_rate", parameter(calibration, "hop_rate")) +
-          line("insertion_rate", parameter(calibration, "insertion_rate")) +
-          "  entry: spread\n  wall_distance: " + short_number(diameter) +
+          line("insertion_rate", parameter(calibration, "insertion_rate")) + entry_text(pipeline, calibration) +
+          "  wall_distance: " + short_number(diameter) +
           "  # one diameter; not measured\n  # V_s/V_p = " + short_number(volume.value);
   if (std::isfinite(volume.error)) text += " +- " + short_number(volume.error);
   return text + '\n';
@@ -203,7 +216,7 @@ std::string calibrated_spot_file(const Pipeline& pipeline, const Table& calibrat
   const double diameter = 2 * frame.particles.radius.front();
   return "# The spot model of " + pipeline.file + ", by grainvdb spot calibrate. Numbers in the units of the dumps.\n" +
          "grainvdb: 1\n\n" + packing_text(pipeline, frames.front()) +
-         container_text(pipeline, container_of(pipeline, frame, grains)) + spots_text(calibration, diameter) +
+         container_text(pipeline, container_of(pipeline, frame, grains)) + spots_text(pipeline, calibration, diameter) +
          "\nrelaxation:\n  every: 1\n  strength: 0.8\n" + output_text(frames, source);
 }
 

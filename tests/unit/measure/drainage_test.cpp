@@ -141,7 +141,8 @@ TEST(KinematicFit, KeepsToTheWindowThatIsGiven) {
   EXPECT_NEAR(number(t, "b").value, 2.28, 1e-5);
 }
 
-// Three output times whose b differ, as those of blocks of a run do: the jackknife over them is the error of their mean.
+// Three output times whose b differ, as those of blocks of a run do: the jackknife over them is the error of their
+// mean.
 TEST(KinematicFit, TakesErrorsFromOutputTimes) {
   const auto flow_of = [](double b) {
     FieldScene s = draining();

@@ -233,6 +233,17 @@ TEST(TimeGroups, TellTheErrorOfAMeanOfDependentSamples) {
   EXPECT_TRUE(std::isnan(mean_by_time_groups({1, 2, 3}).error));
 }
 
+TEST(SpotMeasurements, SaySoWhereThereAreNoGrains) {
+  Frame empty;
+  empty.box = column_box;
+  const OptionValues box{{"lo", Numbers{0, 0, 23}}, {"hi", Numbers{6, 6, 36}}};
+  for (const MeasurementInfo& info :
+       {outflow_measurement(), density_drop_measurement(), spot_calibration_measurement()})
+    for (const std::vector<Frame>& frames : {std::vector<Frame>{}, std::vector<Frame>{empty, empty}})
+      for (const Table& table : tables_of(info, frames, info.name == "outflow" ? OptionValues{} : box))
+        EXPECT_FALSE(table.remarks.empty()) << table.name;
+}
+
 TEST(SpotCalibration, RefusesOptionsThatMeanNothing) {
   const MeasurementInfo info = spot_calibration_measurement();
   OptionValues options;

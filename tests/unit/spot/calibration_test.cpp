@@ -143,7 +143,8 @@ Table table_of(double radius) {
                                                                                {"influence", 399.04},
                                                                                {"hop_rate", 28},
                                                                                {"insertion_rate", 375},
-                                                                               {"volume", 0.2}})
+                                                                               {"volume", 0.2},
+                                                                               {"offset", 5.1}})
     t.numbers.push_back({.name = name, .value = value, .error = 0.01 * value, .description = "as published"});
   return t;
 }
@@ -189,6 +190,23 @@ TEST(CalibratedSpotFile, TakesWallsAndSlotFromTheOptions) {
   const std::string text = calibrated_spot_file(p, table_of(2.6), *open_dumps(p.input));
   EXPECT_THAT(text, AllOf(HasSubstr("  lo: [-10.5, 0.0, 1.0]\n"), HasSubstr("  hi: [10.0, 8.0, "),
                           HasSubstr("    centre: [0.5, 0]\n"), HasSubstr("  radius: 2.6  # +- 0.026, as published\n")));
+}
+
+// A slot of 6 and R = 2.6 make 4.35 where spots enter all over it, and the kernel, c = 3, another 0.75; from the middle
+// 2.1 in all.
+TEST(CalibratedSpotFile, LetsSpotsInInTheMiddleWhereProfilesAreNarrow) {
+  const Pipeline p = of_dump();
+  const auto entry = [&](double offset, double error) {
+    Table t = table_of(2.6);
+    t.numbers.back().value = offset;
+    t.numbers.back().error = error;
+    const std::string text = calibrated_spot_file(p, t, *open_dumps(p.input));
+    return text.substr(text.find("entry: ") + 7, 6);
+  };
+  EXPECT_EQ(entry(5.1, 0.5), "spread");
+  EXPECT_EQ(entry(2.1, 0.5), "centre");
+  EXPECT_EQ(entry(2.1, 1), "spread");  // not known well enough
+  EXPECT_EQ(entry(std::nan(""), std::nan("")), "spread");
 }
 
 TEST(CalibratedSpotFile, IsRefusedWithoutAParameter) {
