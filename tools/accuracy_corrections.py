@@ -161,6 +161,7 @@ def gradient(options, folder, images):
     panel.plot(PER_CUTOFF, naive, ":", color=VIOLET, label="there, with 0 for the neighbour that is not there")
     panel.plot(PER_CUTOFF, kernel, "^-", color=GREEN, label="kernel, from the smoothed wave")
     panel.set(xscale="log", yscale="log", xlabel="voxels per cutoff c/h", ylabel="rms error, relative to the gradient")
+    panel.set_ylim(bottom=2e-4)
     panel.set_xticks(PER_CUTOFF, [str(n) for n in PER_CUTOFF])
     panel.minorticks_off()
     panel.legend(fontsize=7)

@@ -1,6 +1,5 @@
 #include "pipeline/species_stages.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <map>
 #include <stdexcept>

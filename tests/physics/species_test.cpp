@@ -229,11 +229,15 @@ TEST(Species, OfAllGrainsIsTheWholeToTheLastBit) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     return run(p, scene.frames);
   };
-  const Result one = on(1), two = on(2);
-  for (std::size_t k = 0; k < fields.size(); ++k)
-    EXPECT_TRUE(same_bytes(one.only().field(p.fields[fields.size() + k]), one.only().field(fields[k]))) << fields[k];
-  for (const std::string& field : p.fields)
-    EXPECT_TRUE(same_bytes(one.only().field(field), two.only().field(field))) << field;
+  for (const char* self_weight : {"none", "corrected"}) {
+    SCOPED_TRACE(self_weight);
+    set_option(p, "temperature", "self_weight", std::string(self_weight));
+    const Result one = on(1), two = on(2);
+    for (std::size_t k = 0; k < fields.size(); ++k)
+      EXPECT_TRUE(same_bytes(one.only().field(p.fields[fields.size() + k]), one.only().field(fields[k]))) << fields[k];
+    for (const std::string& field : p.fields)
+      EXPECT_TRUE(same_bytes(one.only().field(field), two.only().field(field))) << field;
+  }
 }
 
 // Grains behind a wall are left out and those before it have images, whatever the species; so in planes.

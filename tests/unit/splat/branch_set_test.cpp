@@ -91,6 +91,15 @@ TEST(BranchSet, LeavesApartWhatIsNotSpreadEvenly) {
   }
 }
 
+// The sums of species, which have the halves apart, add up to that of all.
+TEST(BranchSet, LeavesApartTheHalvesOfTwoSpecies) {
+  Contact c = contact(0.5);
+  c.branches.species = {1, 1};
+  EXPECT_EQ(pieces(c), 1u);
+  c.branches.species = {1, -1};
+  EXPECT_EQ(pieces(c), 2u);
+}
+
 TEST(BranchSet, DividesBranchesThatNoRuleCanIntegrate) {
   Contact c = contact(0.5);
   for (auto& column : c.branches.arm) column[1] = 0;

@@ -103,6 +103,38 @@ TEST_P(ContactSplat, IsTheSumOfItsLineIntegrals) {
   expect_zero_where_inactive(sums);
 }
 
+// At the voxels of more branches the sums of some are what they are by themselves, and 0 where these do not reach.
+TEST_P(ContactSplat, MayHaveMoreVoxelsThanItReaches) {
+  const HalfBranches some = random_branches(scene, 5, 26);
+  const auto q = random_values(some.size(), 27);
+  HalfBranches more = branches;
+  for (std::size_t b = 0; b < some.size(); ++b)
+    for (std::size_t a = 0; a < 3; ++a) {
+      more.start[a].push_back(some.start[a][b]);
+      more.arm[a].push_back(some.arm[a][b]);
+      more.force[a].push_back(some.force[a][b]);
+    }
+  for (const LineIntegral method : {exact, LineIntegral::adaptive()}) {
+    const LeafBuffers own = splat_contacts(lattice, kernel, some, q, 1, method);
+    const LeafBuffers all = splat_contacts(lattice, kernel, more, random_values(more.size(), 28), 1, method);
+    LeafBuffers found(all.topology(), 1);
+    const grainvdb::ContactSplat splat(lattice, kernel, some, q, 1, method, nullptr, all.topology());
+    splat.sums([&](std::size_t leaf, const double* values) { std::copy_n(values, leaf_size, found.block(leaf, 0)); });
+    std::size_t beyond = 0;
+    for (std::size_t leaf = 0; leaf < all.topology()->leaf_count(); ++leaf)
+      all.topology()->mask(leaf).for_each([&](int v) {
+        const Coord voxel = voxel_at(all.topology()->origin(leaf), v);
+        EXPECT_EQ(value_at(found, voxel, 0), value_at(own, voxel, 0));
+        if (!is_active(*own.topology(), voxel)) ++beyond;
+      });
+    EXPECT_GT(beyond, 100U);
+  }
+  grainvdb::ContactSplat(
+      lattice, kernel, {}, {}, 1, exact, nullptr,
+      splat_contacts(lattice, kernel, branches, std::vector<double>(branches.size()), 1, exact).topology())
+      .sums([](std::size_t, const double*) { ADD_FAILURE() << "there is nothing to hand over"; });
+}
+
 TEST_P(ContactSplat, BytesDoNotDependOnThreads) {
   const HalfBranches many = random_branches(scene, 1000, 24);
   const auto q = random_values(many.size() * 2, 25);

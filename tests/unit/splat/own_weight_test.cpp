@@ -81,6 +81,17 @@ TEST_P(OwnWeight, IsTheSameForAnyThreads) {
   EXPECT_EQ(one, with_threads(2));
 }
 
+TEST_P(OwnWeight, OfSomeIsThatOfThemAmongAll) {
+  const Scene& scene = GetParam();
+  const Weighed all(scene, scene.random_positions(200, 83), weights(200));
+  std::vector<std::uint8_t> wanted(200);
+  for (std::size_t i = 0; i < 200; i += 3) wanted[i] = 1;
+  const std::vector<double> some = deviation_factors(all.lattice, all.kernel, all.position, all.weight,
+                                                     all.total.blocks(), 0, Outside::refuse, wanted);
+  const std::vector<double> factors = all.factors();
+  for (std::size_t i = 0; i < 200; ++i) EXPECT_EQ(some[i], wanted[i] != 0 ? factors[i] : 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Scenes, OwnWeight, testing::ValuesIn(scenes()),
                          [](const auto& each) { return each.param.name; });
 
