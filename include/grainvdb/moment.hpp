@@ -86,7 +86,7 @@ struct Moment {
   BranchKind branch_kind = BranchKind::all;  ///< for contacts
   /// The number of the species (Pipeline::species) whose particles, or half branches, it sums over and `values` sees.
   std::optional<int> species{};
-  LineIntegral line_integral{};              ///< for contacts
+  LineIntegral line_integral{};  ///< for contacts
 
   /// For sums Σ w q W whose mean is taken off later: the moment Σ w W. The splat then sums w (q - r) with a local
   /// reference r of q, in which single precision loses nothing.

@@ -22,8 +22,7 @@ std::string words_of(const CLI::App& app) {
 // The words that may follow each chain of commands, as branches of a shell `case`.
 void write_words(std::ostream& out, const CLI::App& app, const std::string& chain) {
   out << "    \"" << chain << "\") words=\"" << words_of(app) << "\" ;;\n";
-  for (const CLI::App* command : subcommands_of(app))
-    write_words(out, *command, chain + ' ' + command->get_name());
+  for (const CLI::App* command : subcommands_of(app)) write_words(out, *command, chain + ' ' + command->get_name());
 }
 
 void write_chains(std::ostream& out, const CLI::App& app, const std::string& chain) {

@@ -57,7 +57,7 @@ struct KeyInfo {
   std::optional<ConfigValue> default_value{};
   std::vector<std::string> choices{};  ///< of texts; empty: anything
   std::string name_pattern{};          ///< for the JSON schema: a regular expression of names of sections that the user
-                               ///< chooses, or of texts beside the choices that the file may define elsewhere
+                                       ///< chooses, or of texts beside the choices that the file may define elsewhere
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   bool above_minimum = false;  ///< the minimum itself is not allowed

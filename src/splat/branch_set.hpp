@@ -22,7 +22,8 @@ struct BranchValues {
 
 /// A piece is a half branch; or an equal part of one that no rule can integrate at once; or both halves of a contact,
 /// where its point lies on the line of centres, the values of the halves are as their lengths and both are of the same
-/// species: then the whole branch takes fewer points than its halves. Whole and parted branches occur with the adaptive method only.
+/// species: then the whole branch takes fewer points than its halves. Whole and parted branches occur with the adaptive
+/// method only.
 class BranchSet {
  public:
   /// `branches` and `values` must outlive the set. Pieces that reach no leaf that is wanted are left out of the

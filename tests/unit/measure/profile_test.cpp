@@ -137,8 +137,9 @@ TEST(MeasurementRegistry, DescribesItself) {
     }
     const OptionValues defaults = testing::defaults_of(info);
     // Some places only the user knows.
-    if (const auto lacking = info.conflict ? info.conflict(defaults) : std::nullopt)
+    if (const auto lacking = info.conflict ? info.conflict(defaults) : std::nullopt) {
       EXPECT_TRUE(options.contains(lacking->option) && lacking->found == "none") << info.name << ' ' << lacking->option;
+    }
     for (const std::string& field : info.needs(defaults).fields)
       EXPECT_NE(StageRegistry::standard().find(field), nullptr) << info.name << ' ' << field;
     EXPECT_EQ(find_measurement(info.name), &info);
