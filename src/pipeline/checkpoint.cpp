@@ -59,6 +59,8 @@ Checkpoint::Checkpoint(const CheckpointOptions& options, RunKey key)
   try {
     remove_leftovers(folder_);
     remove_leftovers(options.output_folder);
+    const fs::path tables = fs::path(options.output_folder) / "tables";
+    if (fs::is_directory(tables)) remove_leftovers(tables.string());
     has_state_ = fs::exists(path(state_name));
     if (has_state_) check_key();
   } catch (...) {

@@ -200,9 +200,13 @@ TEST_F(Resume, KeepsOtherRunsOut) {
 TEST_F(Resume, RemovesWhatAKilledRunLeft) {
   const fs::path leftover = fs::path(folder_.path()) / "fields.hdf.4711-0.tmp";
   std::ofstream(leftover) << "unfinished";
+  const fs::path of_tables = fs::path(folder_.path()) / "tables/numbers.csv.4711-1.tmp";
+  fs::create_directory(of_tables.parent_path());
+  std::ofstream(of_tables) << "unfinished";
   std::ofstream(fs::path(folder_.path()) / "notes.tmp") << "mine";
   ASSERT_TRUE(run_until(std::nullopt));
   EXPECT_FALSE(fs::exists(leftover));
+  EXPECT_FALSE(fs::exists(of_tables));
   EXPECT_TRUE(fs::exists(fs::path(folder_.path()) / "notes.tmp"));
 }
 
