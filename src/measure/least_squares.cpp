@@ -130,7 +130,7 @@ void forget_parameters(Fit& fit) {
 }  // namespace
 
 double Fit::reduced_chi_square() const {
-  return freedom > 0 ? chi_square / static_cast<double>(freedom) : nan;
+  return fitted() && freedom > 0 ? chi_square / static_cast<double>(freedom) : nan;
 }
 
 Fit least_squares(const FitProblem& problem) {

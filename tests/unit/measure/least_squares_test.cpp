@@ -136,6 +136,7 @@ TEST(LeastSquares, RefusesParametersThatOnlyOccurTogether) {
   EXPECT_EQ(fit.rank, 1U);
   EXPECT_GT(fit.condition, 1e10);
   EXPECT_TRUE(std::isnan(fit.parameters[0]) && std::isnan(fit.errors[1]) && std::isnan(fit.covariance[3]));
+  EXPECT_TRUE(std::isnan(fit.reduced_chi_square()));
   EXPECT_THAT(fit.refusal, HasSubstr("1 of 2 parameters"));
   EXPECT_THAT(fit.refusal, HasSubstr("a, b"));
 }
