@@ -95,4 +95,16 @@ class KineticTheory {
   double e_;
 };
 
+enum class Regime { quasi_static, intermediate, inertial };
+
+/// The inertial numbers that part the regimes of flow.
+struct RegimeBounds {
+  double quasi_static = 1e-3;  ///< below: contacts last, stresses do not depend on the rate
+  double inertial = 0.1;       ///< above: collisions, stresses rise as the square of the rate
+  constexpr Regime operator()(double inertial_number) const {
+    if (inertial_number < quasi_static) return Regime::quasi_static;
+    return inertial_number > inertial ? Regime::inertial : Regime::intermediate;
+  }
+};
+
 }  // namespace grainvdb

@@ -7,7 +7,7 @@ namespace grainvdb {
 void register_gradients(StageRegistry& registry);          ///< velocity_gradient
 void register_rates(StageRegistry& registry);              ///< shear_rate
 void register_stress_invariants(StageRegistry& registry);  ///< pressure, pressure_floor, shear_stress, mu
-void register_rheology(StageRegistry& registry);           ///< inertial_number
+void register_rheology(StageRegistry& registry);           ///< inertial_number, regime
 void register_fluidity(StageRegistry& registry);           ///< fluidity, gd_over_dv
 void register_spin(StageRegistry& registry);               ///< rotational_temperature, g_over_domega, dv_over_d_domega
 void register_principal(StageRegistry& registry);          ///< principal_stress, principal_axes, principal_gap

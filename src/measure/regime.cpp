@@ -6,11 +6,6 @@
 
 namespace grainvdb {
 
-Regime RegimeBounds::operator()(double inertial_number) const {
-  if (inertial_number < quasi_static) return Regime::quasi_static;
-  return inertial_number > inertial ? Regime::inertial : Regime::intermediate;
-}
-
 double bagnold_pressure(const FlowState& state) {
   const double speed = state.diameter * state.shear_rate();
   return speed > 0 ? state.pressure() / (state.grain_density() * speed * speed) : FlowState::unknown;

@@ -1,17 +1,9 @@
 #pragma once
-/// Regimes of granular flow, and what Bagnold's scaling and the kinetic theory say of a state.
+/// What Bagnold's scaling and the kinetic theory say of a state.
+#include "grainvdb/laws.hpp"
 #include "measure/flow_state.hpp"
 
 namespace grainvdb {
-
-enum class Regime { quasi_static, intermediate, inertial };
-
-/// The inertial numbers that part the regimes.
-struct RegimeBounds {
-  double quasi_static = 1e-3;  ///< below: contacts last, stresses do not depend on the rate
-  double inertial = 0.1;       ///< above: collisions, stresses rise as the square of the rate
-  Regime operator()(double inertial_number) const;
-};
 
 /// P/(ρ_p d² γ̇²), which depends on φ alone where Bagnold's scaling holds; 1/I². NaN without shearing.
 double bagnold_pressure(const FlowState& state);

@@ -112,6 +112,8 @@ struct Reference {
     value["mu"] = mu;
     value["inertial_number"] =
         pressure > 0 && phi(c) > 0 ? rate * diameter(c) * std::sqrt(density(c) / phi(c) / pressure) : undefined;
+    const double inertial = value["inertial_number"];
+    value["regime"] = std::isnan(inertial) ? undefined : inertial < 1e-3 ? 0 : inertial > 0.1 ? 2 : 1;
     const double g = mu > 1e-6 ? rate / mu : undefined;
     value["fluidity"] = g;
     value["gd_over_dv"] = temperature(c) > 0 ? g * diameter(c) / std::sqrt(temperature(c)) : undefined;

@@ -25,6 +25,7 @@ TEST(DerivedStages, DescribeThemselves) {
                                                  {"shear_stress", {1, "Pa"}},
                                                  {"mu", {1, "1"}},
                                                  {"inertial_number", {1, "1"}},
+                                                 {"regime", {1, "1"}},
                                                  {"fluidity", {1, "1/s"}},
                                                  {"gd_over_dv", {1, "1"}},
                                                  {"rotational_temperature", {1, "m^2/s^2"}},

@@ -111,6 +111,20 @@ TEST(Stress, InertialNumberTakesTheDensityOfTheGrains) {
   EXPECT_NEAR(in.value("inertial_number"), 3.0 * 0.5 * std::sqrt(2400.0 / 600.0), 3 * 0x1p-24);  // ρ_p = 2400
 }
 
+TEST(Stress, RegimesArePartedByTheInertialNumber) {
+  const auto regime = [](double inertial_number) {
+    FakeInput in = one_voxel();
+    in.set("inertial_number", inertial_number);
+    in.set_option("regime", "inertial_above", 0.25);
+    return in.value("regime");
+  };
+  EXPECT_EQ(regime(0.0009), 0);
+  EXPECT_EQ(regime(0.001001), 1);
+  EXPECT_EQ(regime(0.25), 1);
+  EXPECT_EQ(regime(0.2501), 2);
+  EXPECT_TRUE(std::isnan(regime(std::nan(""))));
+}
+
 // Mohr-Coulomb: a principal stress that is tensile, zero, or positive only by rounding has no ratio.
 TEST(Stress, MohrCoulombNeedsCompressionAllAround) {
   const auto ratio = [](std::vector<double> stress, double pressure_min, Reason expected) {
