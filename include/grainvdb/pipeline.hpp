@@ -43,6 +43,7 @@ struct Limits {
   double memory_gb = 0;                       ///< of moment sums; 0: three quarters of the machine's memory
   std::size_t frames_in_flight = 0;           ///< read but not yet summed; 0: chosen by the number of threads
   double volume_error = 0.05;                 ///< relative, of a grain's volume in the fields (grain_volume_error)
+  double cutoff_in_diameters = 1.5;           ///< of a kernel that is wide enough not to show single grains
 };
 
 /// A standard error at which averaging ends.

@@ -37,6 +37,12 @@ struct Progress {
   std::string error{};  ///< where averaging may stop by itself: how far it has come, in words
 };
 
+/// A kernel so narrow beside the grains that fields show these one by one.
+struct NarrowKernel {
+  double in_diameters = 0;  ///< its cutoff, in number mean diameters of the material of the first frame that has any
+  double least = 0;         ///< limits.cutoff_in_diameters
+};
+
 struct RunReport {
   std::size_t frames = 0;         ///< that are in an average
   std::size_t resumed_at = 0;     ///< frames, over all sweeps, that an interrupted run had done before
@@ -50,6 +56,7 @@ struct RunReport {
   std::vector<std::pair<std::string, std::size_t>> masked;  ///< reason → voxels, of the last output time
   std::vector<BadFrame> bad_frames;                         ///< that were left out
   std::optional<Stop> stop;                                 ///< where averaging could stop by itself
+  std::optional<NarrowKernel> narrow_kernel;
   std::vector<std::string> averaging;                       ///< what there is to say of the averages, in words
   std::vector<std::string> walls;                           ///< where they are and what is done about them, in words
   std::vector<std::string> files;                           ///< written, those of the tracers apart

@@ -67,6 +67,16 @@ void print_steps(const std::vector<FrameInfo>& frames) {
   std::cout << "spacing: " << least;
   if (most != least) std::cout << " ... " << most;
   std::cout << " steps\n";
+  // A gap is more than half as wide again as the closest frames are.
+  std::vector<std::int64_t> before_gaps;
+  for (std::size_t k = 1; k < frames.size(); ++k)
+    if (2 * (frames[k].step - frames[k - 1].step) > 3 * least) before_gaps.push_back(frames[k - 1].step);
+  if (before_gaps.empty()) return;
+  constexpr std::size_t shown = 5;
+  std::cout << "gaps: " << before_gaps.size() << ", after step ";
+  for (std::size_t n = 0; n < std::min(shown, before_gaps.size()); ++n)
+    std::cout << (n > 0 ? ", " : "") << before_gaps[n];
+  std::cout << (before_gaps.size() > shown ? ", ...\n" : "\n");
 }
 
 void print_frames(const std::vector<FrameInfo>& frames, bool list) {

@@ -78,6 +78,11 @@ std::string warnings_of_input(const RunReport& report) {
 
 std::string warnings_of_results(const RunReport& report, const std::string& where) {
   std::string text;
+  if (report.narrow_kernel)
+    text += "grainvdb: warning: " + where + "the kernel's cutoff is " +
+            short_number(report.narrow_kernel->in_diameters) +
+            " mean diameters, less than limits.cutoff_in_diameters = " + short_number(report.narrow_kernel->least) +
+            ": fields show single grains, not a continuum; three diameters are usual (kernel.cutoff)\n";
   if (report.stop && !report.stop->met)
     text += "grainvdb: warning: " + where + "average.until was not met after all " +
             counted(report.stop->frames, "frame") + '\n';

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace grainvdb {
 namespace {
@@ -20,6 +22,9 @@ std::size_t channel_count(const Plan& plan) {
 
 void RunTally::add(const FrameContext& frame) {
   material_ += frame.particles().size();
+  const std::vector<double>& radius = frame.particles().radius;
+  if (!(diameter_ > 0) && !radius.empty())
+    diameter_ = 2 * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size());
   size_.particles = std::max(size_.particles, static_cast<double>(frame.particles().size()));
   size_.contacts = std::max(size_.contacts, static_cast<double>(frame.contact_count()));
 }
@@ -38,11 +43,14 @@ RunReport RunTally::report(const Plan& plan, const Pipeline& pipeline) const {
   RunReport report = report_;
   report.channels = channel_count(plan);
   report.memory = memory_model(plan, pipeline).peak(size_);
+  const double least = pipeline.limits.cutoff_in_diameters;
+  if (pipeline.cutoff < least * diameter_) report.narrow_kernel = NarrowKernel{pipeline.cutoff / diameter_, least};
   return report;
 }
 
 void RunTally::save(ByteWriter& to) const {
   to.number(size_);
+  to.number(diameter_);
   for (const std::size_t n : {material_, report_.active_voxels, report_.summed_leaves, report_.grids})
     to.number(std::uint64_t{n});
   to.number(report_.stop.has_value());
@@ -56,6 +64,7 @@ void RunTally::save(ByteWriter& to) const {
 
 void RunTally::load(ByteReader& from) {
   size_ = from.number<RunSize>();
+  diameter_ = from.number<double>();
   for (std::size_t* n : {&material_, &report_.active_voxels, &report_.summed_leaves, &report_.grids}) *n = from.count();
   if (from.number<bool>()) report_.stop = from.number<Stop>();
   for (std::size_t left = from.count(); left > 0; --left) {

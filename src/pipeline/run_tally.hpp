@@ -34,6 +34,7 @@ class RunTally {
   RunReport report_;
   RunSize size_;
   std::size_t material_ = 0;  // particles that select kept, over frames and sweeps
+  double diameter_ = 0;       // their mean in the first frame that has some, where sizes are read
 };
 
 }  // namespace grainvdb

@@ -188,6 +188,13 @@ void add_limits(Schema& schema) {
   volume.above_minimum = true;
   volume.apply = [](Pipeline& p, const ConfigValue& v) { p.limits.volume_error = std::get<double>(v); };
   schema.keys.push_back(volume);
+  KeyInfo narrow{
+      "limits", "cutoff_in_diameters", ValueType::number,
+      "Least cutoff in mean diameters of the grains: below it the run warns that fields show single grains."};
+  narrow.default_value = defaults.cutoff_in_diameters;
+  narrow.minimum = 0;
+  narrow.apply = [](Pipeline& p, const ConfigValue& v) { p.limits.cutoff_in_diameters = std::get<double>(v); };
+  schema.keys.push_back(narrow);
 }
 
 std::string range_of(const KeyInfo& key) {

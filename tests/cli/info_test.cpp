@@ -23,7 +23,17 @@ TEST(Info, SaysWhatIsInTheDumps) {
                     HasSubstr("columns: id type x y z vx vy vz radius mass (10)"), HasSubstr("units: unspecified")));
   EXPECT_THAT(result.out, Not(HasSubstr("contact columns")));
   const auto bytes = std::to_string(dump_text(0).size() + dump_text(100).size() + dump_text(200).size());
-  EXPECT_THAT(result.out, HasSubstr("files: 3, " + bytes + " bytes"));
+  EXPECT_THAT(result.out, AllOf(HasSubstr("files: 3, " + bytes + " bytes"), Not(HasSubstr("gaps"))));
+}
+
+TEST(Info, TellsGapsBetweenFrames) {
+  const Folder folder;
+  write_dumps(folder);
+  folder.write("frames/dump400.txt", dump_text(400));
+  folder.write("frames/dump500.txt", dump_text(500));
+  const CommandResult result = run_command({"info", "frames/dump*.txt"}, folder.path());
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("spacing: 100 ... 200 steps\ngaps: 1, after step 200\n"));
 }
 
 TEST(Info, ShowsContactsTimesAndEveryFrame) {

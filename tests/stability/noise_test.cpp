@@ -183,11 +183,27 @@ TEST(Thresholds, CoarseVoxels) {
   EXPECT_NEAR(std::stod(recorded->second), 0.244, 5e-4);
 }
 
+// A kernel of one diameter lets φ of a cubic lattice ripple by as much as its mean, one of 1.5 by 4 %.
+TEST(Thresholds, KernelsThatShowSingleGrains) {
+  const Frame frame = one_particle({0.2, 0.3, 0.4});
+  const double diameter = 2 * frame.particles.radius[0];
+  const auto narrow = [&](double in_diameters, double least) {
+    Pipeline p = make_pipeline(diameter / 4, {0, 0, 0}, in_diameters * diameter, {"phi"});
+    p.limits.cutoff_in_diameters = least;
+    return run(p, {frame}).report.narrow_kernel;
+  };
+  const double least = Limits{}.cutoff_in_diameters;
+  ASSERT_TRUE(narrow(1.49, least));
+  EXPECT_DOUBLE_EQ(narrow(1.49, least)->in_diameters, 1.49);
+  EXPECT_FALSE(narrow(1.51, least));
+  EXPECT_FALSE(narrow(1.49, 1.48));
+}
+
 // Every threshold that leaves a field undefined can be set, and stands in the pipeline that the result records.
 TEST(Thresholds, AreRecorded) {
   const Pipeline p = load_pipeline(in_repository("pipelines/minimal.yaml"));
   for (const char* name : {"pressure_min", "temperature_min", "rotational_fluctuation_min", "mu_min", "gap",
-                           "shear_rate_min", "resolution", "volume_error"})
+                           "shear_rate_min", "resolution", "volume_error", "cutoff_in_diameters"})
     EXPECT_THAT(p.resolved, ::testing::HasSubstr(std::string(name) + ": ")) << name;
 }
 
