@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "grainvdb/frame_source.hpp"
+#include "pipeline/key_builders.hpp"
 #include "pipeline/number.hpp"
 #include "spot/random_packing.hpp"
 
@@ -105,10 +106,7 @@ Packing read_dump(const Values& v, const std::string& file, SpotRun& run) {
 }  // namespace
 
 std::vector<std::string> packing_dumps(const Values& v, const std::string& file) {
-  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-  auto paths = v.get<std::vector<std::string>>("packing.dump");
-  for (std::string& path : paths) path = std::filesystem::absolute(folder / path).lexically_normal().string();
-  return paths;
+  return paths_beside(std::filesystem::absolute(file).string(), v.get<std::vector<std::string>>("packing.dump"));
 }
 
 StaggeredLattice read_lattice(const Values& v, const Box& box) {
