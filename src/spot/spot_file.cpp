@@ -133,6 +133,8 @@ void check_steps(const Values& v, const SpotRun& run) {
                        {},
                        up ? "a step above 0 along z" : "a step above 0 along one axis",
                        {}});
+  if (p.bias && !up)
+    throw ConfigError({v.where("spots.direction"), "steps with a bias are always up", "any", "direction: up", {}});
   for (int a = 0; a < 3; ++a) {
     if (p.step[a] > 0.25 * box.length(a))
       throw ConfigError({v.where("spots.step"),

@@ -79,6 +79,11 @@ TEST(SpotFile, RefusesWhatWouldRunAndMeanNothing) {
               HasSubstr("the orifice reaches beyond the floor along y"));
   EXPECT_THAT(refusal({"container.hi=[4, 8, 20000]", "packing.random.height=8"}),
               HasSubstr("too long along z to tell small displacements"));
+  const testing::TemporaryFolder folder;
+  std::string biased = text;
+  biased.replace(biased.find("influence: 100"), 14, "bias: {volume: 0.2}");
+  EXPECT_NO_THROW(load_spot_run(write(folder, biased)));
+  EXPECT_THROW(load_spot_run(write(folder, biased), {"spots.direction=any"}), ConfigError);
   EXPECT_THAT(refusal({"packing.random.phi=1e-6"}), HasSubstr("there is no grain in the packing"));
   EXPECT_THAT(refusal({"output.interval=2"}), HasSubstr("no snapshot but that of the start"));
 }
