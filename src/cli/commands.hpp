@@ -33,7 +33,14 @@ struct PipelineArguments {
   /// What is set: --frames is short for --set frames=...
   std::vector<std::string> settings() const;
 };
-void add_pipeline_arguments(CLI::App& command, PipelineArguments& arguments);
+/// What a subcommand reads: a pipeline file, or another that is written in the same way.
+struct FileArgument {
+  const char* name = "pipeline";
+  const char* type = "PIPELINE";
+  const char* help = "The pipeline file";
+  const char* keys = "kernel.cutoff=2.4e-3 or output.fields=[phi,velocity]";
+};
+void add_pipeline_arguments(CLI::App& command, PipelineArguments& arguments, const FileArgument& file = {});
 void add_frames_option(CLI::App& command, PipelineArguments& arguments);
 
 }  // namespace grainvdb::cli

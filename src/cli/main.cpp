@@ -159,13 +159,11 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-void add_pipeline_arguments(CLI::App& command, PipelineArguments& arguments) {
-  command.add_option("pipeline", arguments.file, "The pipeline file")->required()->type_name("PIPELINE");
+void add_pipeline_arguments(CLI::App& command, PipelineArguments& arguments, const FileArgument& file) {
+  command.add_option(file.name, arguments.file, file.help)->required()->type_name(file.type);
   command
-      .add_option(
-          "--set", arguments.overrides,
-          "Set a key of the pipeline file, e.g. kernel.cutoff=2.4e-3 or output.fields=[phi,velocity]; wins over "
-          "the file, may be repeated")
+      .add_option("--set", arguments.overrides,
+                  std::string("Set a key of the file, e.g. ") + file.keys + "; wins over the file, may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false)
       ->take_all();

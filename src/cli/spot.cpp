@@ -40,8 +40,8 @@ void print(const spot::SpotRun& run, const spot::SpotReport& report, const std::
 }
 
 void run(const SpotRunOptions& options) {
-  const spot::SpotRun run = spot::load_spot_run(options.file.file, options.file.overrides);
   check_output_folder(options.output);
+  const spot::SpotRun run = spot::load_spot_run(options.file.file, options.file.overrides);
   watch_for_interrupts();
   spot::SpotReport report;
   {
@@ -57,7 +57,8 @@ void run(const SpotRunOptions& options) {
 void add_run_subcommand(CLI::App& spot) {
   CLI::App* command = spot.add_subcommand("run", "Run the spot model and write dumps");
   const auto options = std::make_shared<SpotRunOptions>();
-  add_pipeline_arguments(*command, options->file);
+  add_pipeline_arguments(*command, options->file,
+                         {"spot_file", "FILE", "The spot file", "output.end=20 or spots.step=[0.5,0.5,0.1]"});
   command->add_option("-o,--output", options->output, "Folder for the dumps; made where there is none")
       ->type_name("DIR")
       ->capture_default_str();

@@ -270,7 +270,8 @@ class SpotCalibration : public Measurement {
       t.remarks.emplace_back(
           "The flow is no looser than what it is compared with, so that spots have no speed: give phi_at_rest, or "
           "reference: layers.");
-    if (counts_.times().size() < loosening_.frames()) t.remarks.emplace_back("Frames without a time have no rates.");
+    if (counts_.times().size() < loosening_.frames())
+      t.remarks.emplace_back("Frames without a time have no rates: give input.dt, the time step of the simulation.");
     if (outputs_ < 3)
       t.remarks.emplace_back(
           "Fewer than three output times lie in the flow, so that the error of b is that of one fit, which is too "

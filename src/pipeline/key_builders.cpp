@@ -36,15 +36,19 @@ KeyInfo texts_key(std::string section, std::string name, std::string help, std::
   return key;
 }
 
-std::vector<std::string> input_paths(const Pipeline& pipeline, const ConfigValue& value) {
-  const std::filesystem::path folder = std::filesystem::path(pipeline.file).parent_path();
+std::vector<std::string> paths_beside(const std::string& file, const std::vector<std::string>& paths) {
+  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
   const std::filesystem::path folder_of_pattern = without_wildcards(folder.string());
   std::vector<std::string> result;
-  for (const std::string& path : std::get<std::vector<std::string>>(value)) {
+  for (const std::string& path : paths) {
     const bool is_pattern = path.find_first_of("*?[") != std::string::npos;
     result.push_back(((is_pattern ? folder_of_pattern : folder) / path).string());
   }
   return result;
+}
+
+std::vector<std::string> input_paths(const Pipeline& pipeline, const ConfigValue& value) {
+  return paths_beside(pipeline.file, std::get<std::vector<std::string>>(value));
 }
 
 KeyInfo vector_key(std::string section, std::string name, std::string help, ApplyValue apply) {

@@ -21,6 +21,9 @@ KeyInfo number_key(std::string section, std::string name, std::string unit, std:
 KeyInfo texts_key(std::string section, std::string name, std::string help, std::vector<std::string> choices,
                   ApplyValue apply);
 
+/// Paths and patterns relative to the folder of that file, whose own name has no wildcards.
+std::vector<std::string> paths_beside(const std::string& file, const std::vector<std::string>& paths);
+
 /// The value of a key of paths and patterns, which are relative to the folder of the pipeline file.
 std::vector<std::string> input_paths(const Pipeline& pipeline, const ConfigValue& value);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -159,6 +160,18 @@ std::string spots_text(const Pipeline& pipeline, const Table& calibration, doubl
   return text + '\n';
 }
 
+// The zone is a diameter wider than a spot, but where a period is too short to hold that. What of spots that do not fit
+// themselves is left to the reader of the file to refuse.
+std::string relaxation_text(const Box& box, double radius, double diameter) {
+  double half = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a)
+    if (box.periodic[a]) half = std::min(half, 0.5 * box.length(a));
+  std::string text = "\nrelaxation:\n  every: 1\n  strength: 0.8\n";
+  if (radius <= half && half < radius + diameter)
+    text += "  radius: " + print_number(half) + "  # half the period; a diameter more than spots.radius is too long\n";
+  return text;
+}
+
 // Without the rounding of a product.
 double to_ten_digits(double x) {
   const double scale = std::pow(10, 10 - std::ceil(std::log10(x)));
@@ -214,10 +227,12 @@ std::string calibrated_spot_file(const Pipeline& pipeline, const Table& calibrat
   if (grains.grains == 0)
     throw InputError({{frame.file}, "no grain of this dump lies above the floor", {}, {}, "Compare bottom and select"});
   const double diameter = 2 * frame.particles.radius.front();
+  const Box box = container_of(pipeline, frame, grains);
+  const double radius = parameter(calibration, "radius").value;
   return "# The spot model of " + pipeline.file + ", by grainvdb spot calibrate. Numbers in the units of the dumps.\n" +
-         "grainvdb: 1\n\n" + packing_text(pipeline, frames.front()) +
-         container_text(pipeline, container_of(pipeline, frame, grains)) + spots_text(pipeline, calibration, diameter) +
-         "\nrelaxation:\n  every: 1\n  strength: 0.8\n" + output_text(frames, source);
+         "grainvdb: 1\n\n" + packing_text(pipeline, frames.front()) + container_text(pipeline, box) +
+         spots_text(pipeline, calibration, diameter) + relaxation_text(box, radius, diameter) +
+         output_text(frames, source);
 }
 
 }  // namespace grainvdb::spot

@@ -2,60 +2,38 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 
-#include "grainvdb/frame_source.hpp"
 #include "pipeline/load_config.hpp"
 #include "pipeline/number.hpp"
 #include "pipeline/resolved.hpp"
-#include "spot/random_packing.hpp"
+#include "spot/spot_packing.hpp"
 #include "spot/spot_schema.hpp"
+#include "spot/spot_values.hpp"
 
 namespace grainvdb::spot {
 namespace {
 
-constexpr double size_tolerance = 1e-3;  // relative, between grains
+constexpr double length_tolerance = 1e-6;  // relative, between lengths that are to be the same
+// Places are whole numbers of 2⁻³¹ of a length: 5e-6 diameters then.
+constexpr double longest_in_diameters = 1e4;
 
-/// The checked values of a file, by type.
-class Values {
- public:
-  Values(const std::string& file, const CheckedConfig& config) : file_(file), config_(config) {}
-
-  template <class T>
-  std::optional<T> find(const std::string& key) const {
-    const auto it = config_.values.find(key);
-    if (it == config_.values.end()) return std::nullopt;
-    return std::get<T>(it->second);
-  }
-  template <class T>
-  T get(const std::string& key) const {
-    return find<T>(key).value();
-  }
-  bool has_section(const std::string& section) const { return config_.places.contains(section); }
-  Location where(const std::string& key) const {
-    const auto it = config_.places.find(key);
-    return it == config_.places.end() ? Location{file_} : it->second;
-  }
-  Vec3 vector(const std::string& key) const {
-    const auto v = get<std::vector<double>>(key);
-    return {v[0], v[1], v[2]};
-  }
-
- private:
-  const std::string& file_;
-  const CheckedConfig& config_;
-};
-
-/// make(), whose errors stand at that place.
-template <class F>
-auto placed(const Location& where, F make) {
-  try {
-    return make();
-  } catch (const ConfigError& error) {
-    Problem problem = error.problem();
-    problem.where = where;
-    throw ConfigError(problem);
+// A hole is a part of the floor.
+void check_orifice(const Values& v, const Container& container) {
+  const Box& box = container.box;
+  const double half = 0.5 * container.orifice->width;
+  const int axes = container.orifice->shape == Orifice::Shape::slot ? 1 : 2;
+  for (int a = 0; a < axes; ++a) {
+    const double tolerance = length_tolerance * box.length(a), centre = container.orifice->centre[a];
+    const bool fits = box.periodic[a]
+                          ? 2 * half <= box.length(a) + tolerance
+                          : centre - half >= box.lo[a] - tolerance && centre + half <= box.hi[a] + tolerance;
+    if (fits) continue;
+    throw ConfigError({v.where("container.orifice"),
+                       std::string("the orifice reaches beyond the floor along ") + "xyz"[a],
+                       print_number(centre - half) + " to " + print_number(centre + half),
+                       "an orifice between " + print_number(box.lo[a]) + " and " + print_number(box.hi[a]),
+                       "Change container.orifice.width or centre"});
   }
 }
 
@@ -80,6 +58,7 @@ Container read_container(const Values& v) {
   const auto centre = v.get<std::vector<double>>("container.orifice.centre");
   orifice.centre = {centre[0], centre[1]};
   container.orifice = orifice;
+  check_orifice(v, container);
   return container;
 }
 
@@ -132,13 +111,6 @@ void check_model(const Values& v, const std::string& file) {
     throw ConfigError({v.where("container"), "voids have no orifice to enter at", {}, "container.orifice", {}});
 }
 
-StaggeredLattice read_lattice(const Values& v, const Box& box) {
-  return placed(v.where("packing.lattice"), [&] {
-    return StaggeredLattice(box, v.get<double>("packing.lattice.diameter"), v.vector("packing.lattice.step"),
-                            v.find<double>("packing.lattice.height").value_or(box.length(2)));
-  });
-}
-
 VoidRun read_voids(const Values& v, const SpotRun& run) {
   VoidParameters p;
   p.hop_rate = v.get<double>("voids.hop_rate");
@@ -148,6 +120,40 @@ VoidRun read_voids(const Values& v, const SpotRun& run) {
   VoidRun voids{read_lattice(v, run.container.box), p};
   placed(v.where("container.orifice"), [&] { return LatticeVoids(run.container, voids.lattice, p, run.seed); });
   return voids;
+}
+
+// Steps that spots can go, and that grains can follow.
+void check_steps(const Values& v, const SpotRun& run) {
+  const SpotParameters& p = run.parameters;
+  const Box& box = run.container.box;
+  const bool up = p.direction == SpotParameters::Direction::up;
+  const double length = std::hypot(p.step[0], p.step[1], p.step[2]);
+  if (up ? p.step[2] == 0 : length == 0)
+    throw ConfigError({v.where("spots.step"),
+                       up ? "spots would never rise" : "spots would never move",
+                       {},
+                       up ? "a step above 0 along z" : "a step above 0 along one axis",
+                       {}});
+  if (p.bias && !up)
+    throw ConfigError({v.where("spots.direction"), "steps with a bias are always up", "any", "direction: up", {}});
+  for (int a = 0; a < 3; ++a) {
+    if (p.step[a] > 0.25 * box.length(a))
+      throw ConfigError({v.where("spots.step"),
+                         std::string("steps are long beside the container along ") + "xyz"[a],
+                         print_number(p.step[a]),
+                         "at most a quarter of its length, " + print_number(0.25 * box.length(a)),
+                         {}});
+    if (!box.periodic[a] && (a < 2 || !up) && !(2 * p.wall_distance < box.length(a)))
+      throw ConfigError({v.where("spots.wall_distance"),
+                         std::string("walls leave no room for spots along ") + "xyz"[a],
+                         print_number(p.wall_distance),
+                         "less than half the distance of the walls, " + print_number(0.5 * box.length(a)),
+                         {}});
+  }
+  const double moved = length / (p.bias ? p.bias->fewest / p.bias->volume : p.influence);
+  if (moved > 0.5 * run.packing.diameter)
+    throw ConfigError({v.where("spots.step"), "a spot moves grains too far at once", print_number(moved),
+                       "at most half a diameter", "Take shorter steps or a larger influence"});
 }
 
 // What no single key can tell.
@@ -177,98 +183,25 @@ void check_together(const Values& v, const SpotRun& run) {
                          std::string("the container is too short along the periodic axis ") + "xyz"[a],
                          print_number(run.container.box.length(a)), "at least " + print_number(2 * reach),
                          "A grain would meet a spot and its image"});
-    if (p.step[a] > 0.25 * run.container.box.length(a))
-      throw ConfigError({v.where("spots.step"), "steps must be short beside the container", {}, {}, {}});
+    const double longest = longest_in_diameters * run.packing.diameter;
+    if (run.container.box.length(a) > longest)
+      throw ConfigError({v.where("container.hi"),
+                         std::string("the container is too long along ") + "xyz"[a] + " to tell small displacements",
+                         print_number(run.container.box.length(a)), "at most 10,000 diameters",
+                         "There is no wall at the top: a container little higher than the packing will do"});
   }
-  const double moved = p.step[2] / (p.bias ? p.bias->fewest / p.bias->volume : p.influence);
-  if (moved > 0.5 * run.packing.diameter)
-    throw ConfigError({v.where("spots.step"), "a spot moves grains too far at once", print_number(moved),
-                       "at most half a diameter", "Take shorter steps or a larger influence"});
+  check_steps(v, run);
 }
 
-std::vector<std::string> dump_paths(const std::string& file, std::vector<std::string> paths) {
-  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-  for (std::string& path : paths) path = (folder / path).string();
-  return paths;
-}
-
-bool contains(const Box& box, const Vec3& x) {
-  for (int a = 0; a < 3; ++a)
-    if (!box.periodic[a] && (x[a] < box.lo[a] || x[a] > box.hi[a])) return false;
-  return true;
-}
-
-Packing read_dump(const Values& v, const std::string& file, SpotRun& run) {
-  InputSpec spec;
-  spec.particles = dump_paths(file, v.get<std::vector<std::string>>("packing.dump"));
-  spec.radius = v.find<double>("packing.radius");
-  const auto source = open_dumps(spec);
-  if (run.units.empty() && find_unit_system(source->units().name) != nullptr) run.units = source->units().name;
-  const auto n = static_cast<std::int64_t>(source->frames().size());
-  const std::int64_t wanted = v.get<std::int64_t>("packing.frame"), k = wanted < 0 ? wanted + n : wanted;
-  if (k < 0 || k >= n)
-    throw ConfigError({v.where("packing.frame"),
-                       "there is no such frame",
-                       std::to_string(wanted),
-                       "one of the " + std::to_string(n) + " frames of the dump",
+void check_snapshots(const Values& v, const SpotRun& run) {
+  if (run.end / run.interval > 1e7)
+    throw ConfigError({v.where("output.interval"), "there would be too many snapshots", {}, "at most 1e7", {}});
+  if (run.interval > run.end * (1 + length_tolerance))
+    throw ConfigError({v.where("output.interval"),
+                       "there would be no snapshot but that of the start",
+                       print_number(run.interval),
+                       "at most output.end, " + print_number(run.end),
                        {}});
-  const auto types = v.find<std::vector<std::int64_t>>("packing.types");
-  ColumnSet columns = Column::radius;
-  if (types) columns |= Column::type;
-  const Frame frame = source->read(static_cast<std::size_t>(k), columns);
-  Packing packing;
-  double least = 0, most = 0;
-  for (std::size_t i = 0; i < frame.particles.size(); ++i) {
-    if (types && std::find(types->begin(), types->end(), frame.particles.type[i]) == types->end()) continue;
-    const Vec3 x{frame.particles.position[0][i], frame.particles.position[1][i], frame.particles.position[2][i]};
-    if (!contains(run.container.box, x)) {
-      ++run.left_out;
-      continue;
-    }
-    const double d = 2 * frame.particles.radius[i];
-    least = packing.id.empty() ? d : std::min(least, d);
-    most = std::max(most, d);
-    packing.id.push_back(frame.particles.id[i]);
-    packing.position.push_back(x);
-  }
-  if (packing.id.empty())
-    throw InputError({{frame.file},
-                      "no grain of this dump lies in the container",
-                      {},
-                      {},
-                      "Compare container.lo and hi with `grainvdb info`"});
-  if (most - least > size_tolerance * most)
-    throw InputError({{frame.file},
-                      "the grains have several sizes",
-                      "diameters " + print_number(least) + " to " + print_number(most),
-                      "equal spheres",
-                      "Choose a type by packing.types, or set packing.radius for a dump without sizes"});
-  packing.diameter = 0.5 * (least + most);
-  return packing;
-}
-
-Packing make_packing(const Values& v, const std::string& file, SpotRun& run) {
-  const bool random = v.has_section("packing.random"), dump = v.has_section("packing.dump"),
-             lattice = v.has_section("packing.lattice");
-  if (random + dump + lattice != 1)
-    throw ConfigError({v.where("packing"),
-                       "the packing must be given in one way",
-                       {},
-                       "either packing.dump or packing.random or packing.lattice",
-                       {}});
-  if (dump) return read_dump(v, file, run);
-  if (lattice) return lattice_packing(read_lattice(v, run.container.box), v.get<double>("packing.lattice.diameter"));
-  Box box = run.container.box;
-  if (const auto height = v.find<double>("packing.random.height")) box.hi[2] = std::min(box.hi[2], box.lo[2] + *height);
-  const double phi = v.get<double>("packing.random.phi"), diameter = v.get<double>("packing.random.diameter");
-  for (int a = 0; a < 3; ++a)
-    if (box.length(a) < 4 * diameter)
-      throw ConfigError({v.where("packing.random"),
-                         std::string("the packing is too thin along ") + "xyz" [a],
-                         {},
-                         "at least four diameters",
-                         {}});
-  return random_packing(box, phi, diameter, run.seed);
 }
 
 }  // namespace
@@ -283,8 +216,7 @@ SpotRun load_spot_run(const std::string& file, const std::vector<std::string>& o
   run.seed = static_cast<std::uint64_t>(v.get<std::int64_t>("seed"));
   run.interval = v.get<double>("output.interval");
   run.end = v.get<double>("output.end");
-  if (run.end / run.interval > 1e7)
-    throw ConfigError({v.where("output.interval"), "there would be too many snapshots", {}, "at most 1e7", {}});
+  check_snapshots(v, run);
   run.units = v.find<std::string>("output.units").value_or("");
   run.packing = make_packing(v, file, run);
   if (run.units.empty()) run.units = "lj";
@@ -295,6 +227,8 @@ SpotRun load_spot_run(const std::string& file, const std::vector<std::string>& o
     check_together(v, run);
     config.values.insert_or_assign("relaxation.radius", run.parameters.relaxation.radius);
   }
+  // The resolved file lies in another folder.
+  if (v.has_section("packing.dump")) config.values.insert_or_assign("packing.dump", packing_dumps(v, file));
   config.values.insert_or_assign("output.units", run.units);
   // Defaults of sections that are not there would make them be there.
   if (run.voids) std::erase_if(config.values, [](const auto& value) { return value.first.starts_with("relaxation."); });

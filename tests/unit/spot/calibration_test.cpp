@@ -182,6 +182,17 @@ TEST(CalibratedSpotFile, RunsTheSiloOfTheDumps) {
   EXPECT_THAT(run.resolved, HasSubstr("frame: 1"));
 }
 
+// The period along y is 8: spots of 3.2 with a diameter around them do not fit.
+TEST(CalibratedSpotFile, RelaxesNoMoreThanHalfAPeriod) {
+  const Pipeline p = of_dump();
+  const testing::TemporaryFolder folder;
+  const std::string file = folder.path() + "/spot.yaml";
+  testing::write_plain(file, calibrated_spot_file(p, table_of(3.2), *open_dumps(p.input)));
+  EXPECT_EQ(load_spot_run(file).parameters.relaxation.radius, 4);
+  testing::write_plain(file, calibrated_spot_file(p, table_of(2.8), *open_dumps(p.input)));
+  EXPECT_NEAR(load_spot_run(file).parameters.relaxation.radius, 3.8, 1e-12);
+}
+
 TEST(CalibratedSpotFile, TakesWallsAndSlotFromTheOptions) {
   Pipeline p = of_dump();
   p.measure["spot_calibration"].at("side_walls") = Numbers{-10.5, 10};

@@ -67,6 +67,35 @@ TEST(SpotFile, RefusesWhatCannotBeRun) {
   EXPECT_THAT(refusal({"input.particles=x.dump"}), HasSubstr("this is a pipeline file"));
 }
 
+TEST(SpotFile, RefusesWhatWouldRunAndMeanNothing) {
+  EXPECT_THAT(refusal({"spots.step=[0.676, 0.676, 0]"}), HasSubstr("spots would never rise"));
+  EXPECT_THAT(refusal({"spots.step=[0, 0, 0]", "spots.direction=any"}), HasSubstr("spots would never move"));
+  EXPECT_THAT(refusal({"spots.step=[2, 1.9, 0.01]", "spots.influence=5"}), HasSubstr("moves grains too far"));
+  EXPECT_THAT(refusal({"spots.step=[0.676, 2.1, 0.1]"}), HasSubstr("long beside the container along y; found 2.1"));
+  EXPECT_THAT(refusal({"spots.wall_distance=4"}), HasSubstr("walls leave no room for spots along x"));
+  EXPECT_THAT(refusal({"container.orifice.width=9"}), HasSubstr("the orifice reaches beyond the floor along x"));
+  EXPECT_THAT(refusal({"container.orifice.centre=[2.5, 0]"}),
+              HasSubstr("found 0.5 to 4.5; expected an orifice between"));
+  EXPECT_THAT(refusal({"container.orifice.shape=circle", "container.periodic=[x]"}),
+              HasSubstr("the orifice reaches beyond the floor along y"));
+  EXPECT_THAT(refusal({"container.hi=[4, 8, 20000]", "packing.random.height=8"}),
+              HasSubstr("too long along z to tell small displacements"));
+  const testing::TemporaryFolder folder;
+  std::string biased = text;
+  biased.replace(biased.find("influence: 100"), 14, "bias: {volume: 0.2}");
+  EXPECT_NO_THROW(load_spot_run(write(folder, biased)));
+  EXPECT_THROW(load_spot_run(write(folder, biased), {"spots.direction=any"}), ConfigError);
+  EXPECT_THAT(refusal({"packing.random.phi=1e-6"}), HasSubstr("there is no grain in the packing"));
+  EXPECT_THAT(refusal({"output.interval=2"}), HasSubstr("no snapshot but that of the start"));
+}
+
+TEST(SpotFile, AllowsAnOrificeAsWideAsTheFloor) {
+  EXPECT_THAT(refusal({"container.orifice.width=8"}), HasSubstr("nothing was refused"));
+  EXPECT_THAT(
+      refusal({"container.orifice.shape=circle", "container.orifice.width=8", "container.orifice.centre=[0, 1]"}),
+      HasSubstr("nothing was refused"));  // across a periodic end
+}
+
 TEST(SpotFile, NamesThePlaceOfAFault) {
   EXPECT_THAT(refusal({}), HasSubstr("nothing was refused"));
   const testing::TemporaryFolder folder;
@@ -132,6 +161,42 @@ TEST(SpotRun, TakesAPackingFromADump) {
   EXPECT_GT(run.left_out, 0U);
   EXPECT_THROW(load_spot_run(write(folder, content), {"packing.frame=1"}), ConfigError);
   EXPECT_THROW(load_spot_run(write(folder, content), {"packing.types=[3]"}), InputError);
+}
+
+std::string dump_refusal(const std::string& bounds, const std::string& second) {
+  const testing::TemporaryFolder folder;
+  testing::write_plain(folder.path() + "/two.dump", "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS " +
+                                                        bounds + "\nITEM: ATOMS id x y z radius\n1 0 4 1 0.5\n" +
+                                                        second + '\n');
+  std::string content = text;
+  content.replace(content.find("random: {phi: 0.55}"), 19, "dump: two.dump");
+  try {
+    load_spot_run(write(folder, content));
+  } catch (const std::exception& e) {
+    return e.what();
+  }
+  return "nothing was refused";
+}
+
+TEST(SpotFile, RefusesPackingsOfDumpsThatCannotBeMeant) {
+  const std::string bounds = "ff pp ff\n-4 4\n0 8\n0 20";
+  EXPECT_EQ(dump_refusal(bounds, "2 1 4 1 0.5"), "nothing was refused");
+  EXPECT_THAT(dump_refusal(bounds, "2 0 4 1 0.5"), HasSubstr("two grains are at the same place; found ids 1 and 2"));
+  EXPECT_THAT(dump_refusal("ff pp ff\n-4 4\n0 12\n0 20", "2 1 11 1 0.5"),
+              HasSubstr("different periods along y; found 8.0; expected 12.0"));
+  EXPECT_EQ(dump_refusal("ff ff ff\n-4 4\n0 12\n0 20", "2 1 4 1 0.5"), "nothing was refused");
+}
+
+TEST(SpotFile, TheResolvedFileFindsItsDumpsFromAnywhere) {
+  const testing::TemporaryFolder folder;
+  std::filesystem::copy_file(testing::in_repository("sample_dumps/silo/full_040000.dump.gz"),
+                             folder.path() + "/a.dump.gz");
+  std::string content = text;
+  content.replace(content.find("random: {phi: 0.55}"), 19, "dump: a.dump.gz\n  types: [1]");
+  const SpotRun run = load_spot_run(write(folder, content));
+  std::filesystem::create_directory(folder.path() + "/out");
+  testing::write_plain(folder.path() + "/out/spot.yaml", run.resolved);
+  EXPECT_EQ(load_spot_run(folder.path() + "/out/spot.yaml").packing.id, run.packing.id);
 }
 
 const std::string void_text = R"(grainvdb: 1
