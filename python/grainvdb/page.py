@@ -28,7 +28,7 @@ body{font:16px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding
 h1{font-size:1.6rem;margin-bottom:.2rem} h2{font-size:1.2rem;margin-top:2.2rem;border-bottom:1px solid #ddd}
 figure{margin:1rem 0} img{max-width:100%;height:auto} figcaption{color:#555;font-size:.9rem}
 table{border-collapse:collapse;margin:.8rem 0} td,th{padding:.2rem .8rem .2rem 0;text-align:left;vertical-align:top;border-bottom:1px solid #eee}
-td.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums} td.long{min-width:14rem} pre{background:#f6f6f6;padding:.8rem;overflow:auto;font-size:.8rem}
+td.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums} td.long{min-width:12rem} pre{background:#f6f6f6;padding:.8rem;overflow:auto;font-size:.8rem}
 .wide{overflow-x:auto} nav a{margin-right:1rem}
 """
 
@@ -102,7 +102,7 @@ def number(value: float) -> str:
 
 
 def with_error(value: float, error: float) -> str:
-    return number(value) if np.isnan(error) else f"{number(value)} ± {number(error)}"
+    return number(value) if np.isnan(error) else f"{number(value)} ± {error:.2g}"
 
 
 def ordered(names: Sequence[str], first: Sequence[str]) -> list[str]:
