@@ -12,6 +12,7 @@ namespace grainvdb {
 
 struct TraceReport {
   bool through_frames = false;
+  StepLimits limits{};
   std::size_t tracers = 0;
   std::size_t samples = 0;
   std::size_t steps = 0;                    ///< of the integration, over all tracers
@@ -26,8 +27,8 @@ struct TraceReport {
   double nearby_share = 0;                  ///< of the particles that the last of these splatted
   std::vector<std::string> files;           ///< written
 
-  /// Whether histories mean something: always through the mean; through frames when Co ≤ courant_limit and K ≤
-  /// gradient_number_limit in every move.
+  /// Whether histories mean something: always through the mean; through frames when Co and K keep
+  /// within their limits in every move.
   bool is_meaningful() const { return !through_frames || (above_courant_limit == 0 && above_gradient_limit == 0); }
 };
 

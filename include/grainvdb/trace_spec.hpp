@@ -53,6 +53,7 @@ struct TraceSpec {
   std::vector<std::string> record;    ///< fields
   bool strain = true;
   OnUndefined on_undefined = OnUndefined::stop;
+  StepLimits limits{};
   std::int64_t every = 1;  ///< steps, or output times, from sample to sample
   std::vector<std::string> formats;
   Neighbourhood neighbourhood = Neighbourhood::automatic;  ///< has no meaning where fields are written, or for a region

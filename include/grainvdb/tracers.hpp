@@ -36,15 +36,18 @@ enum class OnUndefined : std::uint8_t {
   carry_on,  ///< it moves on, with NaN for that quantity (the strain stays NaN from there on)
 };
 
+/// Beyond these, histories through frames mean nothing.
+struct StepLimits {
+  double courant = 1;            ///< of Co = |u|Δt/h
+  double gradient_number = 0.3;  ///< of K = |∇u|Δt
+};
+
 struct TracerSettings {
   std::variant<FixedSteps, AdaptiveSteps> stepping;
   OnUndefined on_undefined = OnUndefined::stop;
   bool step_numbers = false;  ///< whether Co and K are computed
+  StepLimits limits{};        ///< above which they are counted
 };
-
-/// Limits of what histories through frames can mean.
-inline constexpr double courant_limit = 1;            ///< of Co = |u|Δt/h
-inline constexpr double gradient_number_limit = 0.3;  ///< of K = |∇u|Δt
 
 /// One entry per tracer.
 struct TracerState {
@@ -63,8 +66,8 @@ struct AdvanceReport {
   std::size_t moving = 0;                ///< tracers that still move
   std::size_t steps = 0;                 ///< taken, over all tracers
   std::size_t rejected = 0;              ///< of the adaptive method, to be tried again with a shorter step
-  std::size_t above_courant_limit = 0;   ///< moving tracers with Co > courant_limit; 0 unless asked for
-  std::size_t above_gradient_limit = 0;  ///< moving tracers with K > gradient_number_limit; 0 unless asked for
+  std::size_t above_courant_limit = 0;   ///< moving tracers with Co above its limit; 0 unless asked for
+  std::size_t above_gradient_limit = 0;  ///< moving tracers with K above its limit; 0 unless asked for
 };
 
 /// A set of tracers at one time. Memory: at most 118 bytes per tracer, whatever the length of the

@@ -61,8 +61,9 @@ std::string trace_warning(const TraceReport& report) {
   if (report.is_meaningful()) return {};
   return "histories through frames are not meaningful here: of " + counted(report.moves, "move") +
          " from one output time to the next, " + std::to_string(report.above_gradient_limit) + " had K > " +
-         short_number(gradient_number_limit) + " and " + std::to_string(report.above_courant_limit) + " had Co > " +
-         short_number(courant_limit) + "; trace the time-mean field (trace.through: mean), or dump more often";
+         short_number(report.limits.gradient_number) + " and " + std::to_string(report.above_courant_limit) +
+         " had Co > " + short_number(report.limits.courant) +
+         "; trace the time-mean field (trace.through: mean), or dump more often";
 }
 
 }  // namespace grainvdb

@@ -61,6 +61,7 @@ TraceRun::TraceRun(const Pipeline& pipeline, const FrameSource& source, const La
       first_time_(time_of(source.frames()[wanted.front()])),
       last_time_(time_of(source.frames()[wanted.back()])),
       outputs_(windows_of(pipeline, wanted).size()) {
+  report_.limits = spec_.limits;
   report_.through_frames = spec_.through == TraceSpec::Through::frames;
   report_.tracers = seeds_.size();
 }
@@ -129,6 +130,7 @@ TracerSettings TraceRun::settings() const {
   TracerSettings settings;
   settings.on_undefined = spec_.on_undefined;
   settings.step_numbers = true;
+  settings.limits = spec_.limits;
   if (spec_.scheme == TraceSpec::Scheme::adaptive) {
     AdaptiveSteps adaptive{*spec_.tolerance};
     if (spec_.dt) adaptive.longest = *spec_.dt;

@@ -122,6 +122,18 @@ void add_motion(Schema& schema) {
                  [](Pipeline& p, const ConfigValue& v) { trace_of(p).tolerance = std::get<double>(v); }));
 }
 
+/// A limit beyond which histories through frames are said to mean nothing.
+KeyInfo limit_key(std::string name, std::string of, double StepLimits::*limit) {
+  KeyInfo key =
+      number_key("trace", std::move(name), "",
+                 "Limit of " + std::move(of) +
+                     " between frames, above which the run says that histories through frames mean nothing.",
+                 [limit](Pipeline& p, const ConfigValue& v) { trace_of(p).limits.*limit = std::get<double>(v); });
+  key.default_value = StepLimits{}.*limit;
+  key.hint.clear();
+  return key;
+}
+
 void add_record(Schema& schema, const StageRegistry& registry) {
   std::vector<std::string> fields;
   for (const Stage& stage : registry.stages())
@@ -196,6 +208,8 @@ void add_trace(Schema& schema, const StageRegistry& registry) {
       {"trace", "Points that move with the material, and what they meet on their way.", false, true});
   add_seeds(schema);
   add_motion(schema);
+  schema.keys.push_back(limit_key("courant_limit", "Co = |u|Δt/h", &StepLimits::courant));
+  schema.keys.push_back(limit_key("gradient_limit", "K = |∇u|Δt", &StepLimits::gradient_number));
   add_record(schema, registry);
 }
 

@@ -92,6 +92,7 @@ SpotParameters read_spots(const Values& v, double diameter) {
   p.count = static_cast<std::size_t>(v.get<std::int64_t>("spots.count"));
   p.entry =
       v.get<std::string>("spots.entry") == "centre" ? SpotParameters::Entry::centre : SpotParameters::Entry::spread;
+  p.entry_depth = v.get<double>("spots.entry_depth");
   p.direction =
       v.get<std::string>("spots.direction") == "up" ? SpotParameters::Direction::up : SpotParameters::Direction::any;
   p.wall_distance = v.get<double>("spots.wall_distance");
@@ -155,6 +156,12 @@ void check_together(const Values& v, const SpotRun& run) {
   if (p.insertion_rate > 0 && !run.container.orifice)
     throw ConfigError(
         {v.where("spots.insertion_rate"), "spots have no orifice to enter at", {}, "container.orifice", {}});
+  if (p.entry_depth > 2 * run.packing.diameter)
+    throw ConfigError({v.where("spots.entry_depth"),
+                       "spots enter too far below the floor",
+                       print_number(p.entry_depth),
+                       "at most two diameters",
+                       {}});
   if (p.insertion_rate == 0 && p.count == 0)
     throw ConfigError({v.where("spots"), "there are no spots", {}, "spots.insertion_rate or spots.count above 0", {}});
   if (p.relaxation.radius < p.radius)

@@ -72,7 +72,7 @@ void SpotModel::next_event() {
 void SpotModel::insert_spot() {
   const Box& box = container_.box;
   const Orifice& hole = *container_.orifice;
-  Vec3 spot{hole.centre[0], hole.centre[1], box.lo[2]};
+  Vec3 spot{hole.centre[0], hole.centre[1], box.lo[2] - parameters_.entry_depth};
   const bool spread = parameters_.entry == SpotParameters::Entry::spread;
   if (hole.shape == Orifice::Shape::slot) {
     if (spread) spot[0] += hole.width * (random_.uniform() - 0.5);

@@ -40,6 +40,7 @@ struct SpotParameters {
   double insertion_rate = 0;  ///< λ, through the orifice [1/time]
   std::size_t count = 0;      ///< spots that are there from the start, at random places
   Entry entry = Entry::centre;
+  double entry_depth = 0;  ///< how far below the floor they enter, at most 2 diameters [length]
   Direction direction = Direction::up;
   double wall_distance = 0;  ///< d_w: spots stay that far from side walls; may be negative [length]
   Relaxation relaxation;
@@ -60,10 +61,10 @@ struct SpotCounters {
   std::uint64_t displaced = 0;  ///< particles moved by spots, each as often as it was moved
 };
 
-/// Choices where the publications leave room: spots enter in the plane of the floor; a spot is removed when its turn
-/// comes and it is above the highest layer of the packing; a particle has left when its centre is half a diameter below
-/// the floor; pushes by walls have strength 1. The run depends on the seed alone, not on threads, the instruction set
-/// or the order of the packing's rows.
+/// Choices where the publications leave room: spots enter in the plane of the floor, or below; a spot is removed when
+/// its turn comes and it is above the highest layer of the packing; a particle has left when its centre is half a
+/// diameter below the floor; pushes by walls have strength 1. The run depends on the seed alone, not on threads, the
+/// instruction set or the order of the packing's rows.
 class SpotModel {
  public:
   SpotModel(const Container& container, const Packing& packing, const SpotParameters& parameters, std::uint64_t seed);

@@ -111,6 +111,9 @@ void add_spots(Schema& s) {
       whole(key("spots", "count", ValueType::integer, "Spots at random places at the start."), 0), std::int64_t{0}));
   s.keys.push_back(
       choice("spots", "entry", {"centre", "spread"}, "Spots enter in the middle of the orifice, or all over it."));
+  s.keys.push_back(with_default(
+      zero_allowed(positive("spots", "entry_depth", "length", "How far below the floor, at most two diameters.")),
+      0.0));
   s.keys.push_back(choice("spots", "direction", {"up", "any"}, "Whether steps along z are always up."));
   KeyInfo wall = with_default(key("spots", "wall_distance", ValueType::number,
                                   "Spots stay that far from side walls; negative: they may pass them by as much."),

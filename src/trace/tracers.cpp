@@ -136,8 +136,8 @@ class Mover {
         if (box_.periodic[a]) wrap(box_, static_cast<int>(a), state.position[a][i], state.image[a][i]);
       if (settings_.step_numbers) {
         const double dt = leg_.flow.steady() ? columns.longest_step[i] : leg_.flow.t1() - leg_.flow.t0();
-        report.above_courant_limit += (state.courant[i] *= dt) > courant_limit ? 1 : 0;
-        report.above_gradient_limit += (state.gradient_number[i] *= dt) > gradient_number_limit ? 1 : 0;
+        report.above_courant_limit += (state.courant[i] *= dt) > settings_.limits.courant ? 1 : 0;
+        report.above_gradient_limit += (state.gradient_number[i] *= dt) > settings_.limits.gradient_number ? 1 : 0;
       }
       report.moving += state.stop[i] == TracerStop::moving ? 1 : 0;
     }

@@ -80,5 +80,40 @@ TEST(SpotProfile, SpotsWidenItByTheirOwnWidth) {
   expect_profile({0.2, 0.2, 0.1}, 20);
 }
 
+// Grains in the plane of the floor meet only the part of the spots' ways above the place where they enter: of a ball
+// that comes from D below the plane, ½ + 3D/(4R) - D³/(4R³). In the plane itself that is half of what grains above
+// meet.
+TEST(SpotProfile, GrainsAtTheFloorMeetLessOfSpotsThatEnterThere) {
+  const Box box{{-20, 0, 0}, {20, 8, 14}, {false, true, false}};
+  const spot::Container container{box, spot::Orifice{spot::Orifice::Shape::slot, {0, 0}, 4}};
+  const spot::Packing packing = layers(box, {0, 8});
+  for (const double depth : {0.0, 2.0}) {
+    spot::SpotParameters p = gentle_spots();
+    p.step = {0.2, 0.2, 0.1};
+    p.insertion_rate = 100;
+    p.hop_rate = 1e4;
+    p.entry_depth = depth;
+    spot::SpotModel model(container, packing, p, 12);
+    Displacements displacements(model);
+    std::vector<double> low, high;
+    for (int block = 1; block <= 10; ++block) {
+      model.advance(2.5 * block);
+      const std::vector<Vec3> moved = displacements.next();
+      const std::size_t in_layer = moved.size() / 2;
+      low.push_back(0);
+      high.push_back(0);
+      for (std::size_t i = 0; i < in_layer; ++i) {
+        low.back() -= moved[i][2];
+        high.back() -= moved[in_layer + i][2];
+      }
+    }
+    const Measured share = ratio_of_sums(low, high);
+    const double d = depth / p.radius;
+    EXPECT_LT(share.error, 0.01);
+    // The grid has a few points across a ball; a step of Δz is 1/26 of it.
+    EXPECT_NEAR(share.value, 0.5 + 0.75 * d - 0.25 * d * d * d, 4 * share.error + 0.01) << depth;
+  }
+}
+
 }  // namespace
 }  // namespace grainvdb::testing::spot_profile_test

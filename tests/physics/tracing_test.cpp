@@ -231,6 +231,9 @@ TEST(TraceThroughFrames, SaysWhenHistoriesMeanNothing) {
               AllOf(HasSubstr("2 tracers, 3 samples: 2 moving to the end"), HasSubstr("not meaningful"),
                     HasSubstr("of 4 moves from one output time to the next, 0 had K > 0.3 and 4 had Co > 1"),
                     HasSubstr("trace.through: mean")));
+  p.trace->limits.courant = 1.7;
+  EXPECT_TRUE(trace(p, frames).report.trace->is_meaningful());
+  p.trace->limits = {};
   // As long steps through the mean are coarse, but mean something.
   const Histories mean = trace(through_mean({{1, 2, 3}}, 2, 1), frames);
   EXPECT_TRUE(mean.report.trace->is_meaningful());

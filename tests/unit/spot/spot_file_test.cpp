@@ -63,6 +63,7 @@ TEST(SpotFile, RefusesWhatCannotBeRun) {
   EXPECT_THAT(refusal({"relaxation.radius=2"}), HasSubstr("must hold the spot"));
   EXPECT_THAT(refusal({"packing.dump=nothing.dump"}), HasSubstr("either packing.dump or packing.random"));
   EXPECT_THAT(refusal({"spots.influence=0.1"}), HasSubstr("moves grains too far"));
+  EXPECT_THAT(refusal({"spots.entry_depth=2.1"}), HasSubstr("too far below the floor"));
   EXPECT_THAT(refusal({"input.particles=x.dump"}), HasSubstr("this is a pipeline file"));
 }
 
