@@ -28,7 +28,7 @@ body{font:16px/1.5 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding
 h1{font-size:1.6rem;margin-bottom:.2rem} h2{font-size:1.2rem;margin-top:2.2rem;border-bottom:1px solid #ddd}
 figure{margin:1rem 0} img{max-width:100%;height:auto} figcaption{color:#555;font-size:.9rem}
 table{border-collapse:collapse;margin:.8rem 0} td,th{padding:.2rem .8rem .2rem 0;text-align:left;vertical-align:top;border-bottom:1px solid #eee}
-td.n{text-align:right;font-variant-numeric:tabular-nums} pre{background:#f6f6f6;padding:.8rem;overflow:auto;font-size:.8rem}
+td.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums} td.long{min-width:12rem} pre{background:#f6f6f6;padding:.8rem;overflow:auto;font-size:.8rem}
 .wide{overflow-x:auto} nav a{margin-right:1rem}
 """
 
@@ -62,16 +62,24 @@ class Page:
 
 
 def _is_number(text: str) -> bool:
+    """Also of a number with its error."""
     try:
-        float(text)
+        for part in text.split(" ± "):
+            float(part)
     except ValueError:
         return False
     return True
 
 
+def _class(text: str) -> str:
+    if _is_number(text):
+        return " class=n"
+    return " class=long" if len(text) > 30 else ""
+
+
 def html_table(rows: Sequence[tuple[str, ...]], head: Sequence[str] = ()) -> str:
     def cell(tag: str, value: str) -> str:
-        return f'<{tag}{" class=n" if tag == "td" and _is_number(value) else ""}>{html.escape(value)}</{tag}>'
+        return f"<{tag}{_class(value) if tag == 'td' else ''}>{html.escape(value)}</{tag}>"
 
     lines = ["<tr>" + "".join(cell("th", v) for v in head) + "</tr>"] if head else []
     lines += ["<tr>" + "".join(cell("td", v) for v in row) + "</tr>" for row in rows]
@@ -94,7 +102,7 @@ def number(value: float) -> str:
 
 
 def with_error(value: float, error: float) -> str:
-    return number(value) if np.isnan(error) else f"{number(value)} ± {number(error)}"
+    return number(value) if np.isnan(error) else f"{number(value)} ± {error:.2g}"
 
 
 def ordered(names: Sequence[str], first: Sequence[str]) -> list[str]:

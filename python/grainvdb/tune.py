@@ -92,7 +92,7 @@ def main() -> None:
     arguments = parser.parse_args()
     matplotlib.use("Agg")
     draw(read(arguments.table)).savefig(arguments.picture, dpi=130, bbox_inches="tight")
-    print("Wrote", arguments.picture)
+    print("wrote", arguments.picture)
 
 
 if __name__ == "__main__":

@@ -107,11 +107,11 @@ constexpr ContactText wall_contact_text = {
 };
 
 void write_contacts(std::ostream& out, const ContactText& text, const std::vector<std::string>& files,
-                    const std::vector<std::string>& compute, const ContactDumps& dumps) {
+                    const std::string& computes, const ContactDumps& dumps) {
   if (dumps.known) {
     const std::string head = std::string("  ") + text.section + ':';
     out << head << std::string(23 - head.size(), ' ') << "# " << text.purpose << "\n    files: " << list(files) << '\n';
-    if (!compute.empty()) out << "    compute: " << list(compute) << '\n';
+    if (!computes.empty()) out << "    " << computes << '\n';
     return;
   }
   out << "  # The columns of the " << text.noun << " dumps do not say what they hold:\n  #  ";
@@ -119,6 +119,16 @@ void write_contacts(std::ostream& out, const ContactText& text, const std::vecto
   out << '\n'
       << text.advice << "  # " << text.section << ":\n  #   files: " << list(files) << "\n  #   "
       << text.computes(dumps.columns) << "\n  #   columns: {" << text.columns << "}\n";
+}
+
+std::string compute_text(const std::vector<std::string>& keywords) {
+  return keywords.empty() ? std::string() : "compute: " + list(keywords);
+}
+
+// The columns that the command line names are those of two computes of LAMMPS.
+std::string computes_text(const ContactSpec& contacts) {
+  if (contacts.columns.empty()) return compute_text(contacts.compute);
+  return computes_of_contacts({contacts.columns.at("id1")[0], contacts.columns.at("normal_force")[0]});
 }
 
 void write_input(std::ostream& out, const Draft& draft) {
@@ -139,9 +149,10 @@ void write_input(std::ostream& out, const Draft& draft) {
   if (input.contacts.files.empty())
     out << "  # contacts:          # " << contact_text.purpose << "\n  #   files: contacts*\n";
   else
-    write_contacts(out, contact_text, input.contacts.files, input.contacts.compute, draft.contacts);
+    write_contacts(out, contact_text, input.contacts.files, computes_text(input.contacts), draft.contacts);
   if (!input.wall_contacts.files.empty())
-    write_contacts(out, wall_contact_text, input.wall_contacts.files, input.wall_contacts.compute, draft.wall_contacts);
+    write_contacts(out, wall_contact_text, input.wall_contacts.files, compute_text(input.wall_contacts.compute),
+                   draft.wall_contacts);
 }
 
 void write_selection(std::ostream& out, const Survey& survey) {

@@ -22,6 +22,7 @@ constexpr const char* init_footer = R"(Examples:
   grainvdb init dumps/
   grainvdb init 'post/dump*.liggghts' --contacts 'post/contacts*.liggghts' --contact-compute pos id force contactPoint delta \
       --units si --dt 1e-6 --output shear.yaml
+  grainvdb init 'full_*.dump' --contacts 'contacts_*.dump' --contact-lammps pp pl --output silo.yaml
   grainvdb init run.dump.gz --density 2500 --output run.yaml
   grainvdb init 'grains*.dump' --wall-contacts 'walls*.dump' --wall-contact-compute pos id force
 
@@ -60,12 +61,18 @@ ContactDumps contact_dumps(FrameSource& source, std::vector<std::string> columns
   }
 }
 
+// What the command line says of columns has to fit the dumps.
+void require_named(FrameSource& source, const InputSpec& input) {
+  if (!input.contacts.compute.empty() || !input.contacts.columns.empty()) source.require(0, Column::contacts);
+  if (!input.wall_contacts.compute.empty()) source.require(0, Column::wall_contacts);
+}
+
 void say_if_unknown(const ContactDumps& dumps, const std::string& noun, const std::string& section,
-                    const std::string& option) {
+                    const std::string& options) {
   if (!dumps.columns.empty() && !dumps.known)
     std::cout << "The columns of the " << noun << " dumps are not known: see " << section
-              << " there; for those of LIGGGHTS\n"
-              << option << " names them.\n";
+              << " there, or name them with\n"
+              << options << ".\n";
 }
 
 void refuse_to_replace(const std::string& file) {
@@ -128,6 +135,7 @@ void sort_fields(Draft& draft, const fs::path& file, FrameSource& source) {
 void init(const InitOptions& options) {
   refuse_to_replace(options.file);
   const auto source = open_dumps(options.input);
+  require_named(*source, options.input);
   const FrameInfo& last = source->frames().back();
   const fs::path file = fs::absolute(options.file).lexically_normal();
 
@@ -162,8 +170,9 @@ void init(const InitOptions& options) {
     throw;
   }
   std::cout << "wrote " << options.file << " with " << draft.fields.size() << " fields\n";
-  say_if_unknown(draft.contacts, "contact", "input.contacts", "--contact-compute");
-  say_if_unknown(draft.wall_contacts, "wall contact", "input.wall_contacts", "--wall-contact-compute");
+  say_if_unknown(draft.contacts, "contact", "input.contacts",
+                 "--contact-compute (LIGGGHTS) or --contact-lammps (LAMMPS)");
+  say_if_unknown(draft.wall_contacts, "wall contact", "input.wall_contacts", "--wall-contact-compute (LIGGGHTS)");
 }
 
 }  // namespace

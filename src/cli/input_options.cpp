@@ -2,8 +2,10 @@
 
 #include <array>
 #include <functional>
+#include <string>
 
 #include "cli/number_checks.hpp"
+#include "pipeline/contact_keys.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -15,6 +17,14 @@ void set_box(InputSpec& input, const std::array<double, 6>& corners) {
     box.hi[a] = corners[a + 3];
   }
   input.box = box;
+}
+
+// Where the second name is forgotten the parser takes the next option for it.
+CLI::Validator name_of_compute() {
+  return {[](const std::string& text) {
+            return text.starts_with('-') ? "two names of computes are needed" : std::string();
+          },
+          ""};
 }
 
 }  // namespace
@@ -29,6 +39,16 @@ void add_input_options(CLI::App& command, InputSpec& input) {
       .add_option("--contact-compute", input.contacts.compute,
                   "Keywords of the LIGGGHTS `compute pair/gran/local` that made them")
       ->type_name("KEYWORDS");
+  command
+      .add_option_function<std::array<std::string, 2>>(
+          "--contact-lammps",
+          [&input](const std::array<std::string, 2>& names) {
+            input.contacts.columns = lammps_contact_columns(names[0], names[1]);
+          },
+          "Names of the LAMMPS computes `property/local patom1 patom2` and `pair/local fx fy fz p1 p2 p3` that made "
+          "them")
+      ->type_name("IDS FORCES")
+      ->check(name_of_compute());
   command
       .add_option("--wall-contacts", input.wall_contacts.files,
                   "Dumps of contacts with walls that are no grains: files, folders or patterns")

@@ -154,7 +154,7 @@ void tune_pipeline(const TuneOptions& options) {
   if (!options.quiet)
     std::cout << describe(report, request.tolerance) << "Best of " << options.repeats
               << (options.repeats == 1 ? " run on " : " runs on ") << options.threads
-              << (options.threads == 1 ? " thread" : " threads") << ". Wrote " << table << '\n';
+              << (options.threads == 1 ? " thread" : " threads") << ".\nwrote " << table << '\n';
   if (options.no_picture) return;
   try {
     become_python("grainvdb.tune", {table, (std::filesystem::path(options.output) / "tune.png").string()},

@@ -53,6 +53,16 @@ std::vector<std::string> columns_of(const std::string& compute, std::size_t firs
   return names;
 }
 
+void name_ids(ColumnNames& columns, const std::string& compute) {
+  columns["id1"] = columns_of(compute, 1, 1);
+  columns["id2"] = columns_of(compute, 2, 1);
+}
+
+void name_forces(ColumnNames& columns, const std::string& compute) {
+  columns["normal_force"] = columns_of(compute, 1, 3);
+  columns["tangential_force"] = columns_of(compute, 4, 3);
+}
+
 KeyInfo compute_name_key(const char* name, const char* help, void (*apply)(ColumnNames&, const std::string&)) {
   KeyInfo key{"input.contacts.lammps", name, ValueType::text, help};
   key.required = true;
@@ -64,18 +74,11 @@ void add_lammps_keys(Schema& schema) {
   schema.sections.push_back({"input.contacts.lammps",
                              "Names of the LAMMPS computes that made a dump of a granular pair style, in place of "
                              "columns."});
-  schema.keys.push_back(compute_name_key("ids", "Of compute property/local patom1 patom2.",
-                                         [](ColumnNames& columns, const std::string& compute) {
-                                           columns["id1"] = columns_of(compute, 1, 1);
-                                           columns["id2"] = columns_of(compute, 2, 1);
-                                         }));
+  schema.keys.push_back(compute_name_key("ids", "Of compute property/local patom1 patom2.", &name_ids));
   schema.keys.push_back(compute_name_key("forces",
                                          "Of compute pair/local fx fy fz p1 p2 p3, the normal force and the "
                                          "tangential one.",
-                                         [](ColumnNames& columns, const std::string& compute) {
-                                           columns["normal_force"] = columns_of(compute, 1, 3);
-                                           columns["tangential_force"] = columns_of(compute, 4, 3);
-                                         }));
+                                         &name_forces));
 }
 
 void add_pair_contact_keys(Schema& schema) {
@@ -138,6 +141,14 @@ void add_wall_contact_keys(Schema& schema) {
 void add_contact_keys(Schema& schema) {
   add_pair_contact_keys(schema);
   add_wall_contact_keys(schema);
+}
+
+std::map<std::string, std::vector<std::string>> lammps_contact_columns(const std::string& ids,
+                                                                       const std::string& forces) {
+  ColumnNames columns;
+  name_ids(columns, ids);
+  name_forces(columns, forces);
+  return columns;
 }
 
 }  // namespace grainvdb

@@ -56,14 +56,21 @@ bool boolean(const KeyInfo& key, const ConfigNode& node) {
   return text == "true";
 }
 
+// Beside a guess a long list is in the way.
+std::string expected_names(const KeyInfo& key, const std::string& guess) {
+  constexpr std::size_t most = 24;
+  if (guess.empty() || key.choices.size() <= most) return join_choices(key.choices);
+  return "one of " + std::to_string(key.choices.size()) + " names";
+}
+
 std::string text_value(const KeyInfo& key, const ConfigNode& node) {
   const std::string& text = scalar(key, node);
   if (text.empty()) refuse(key, node, "is empty");
   if (key.choices.empty() || std::find(key.choices.begin(), key.choices.end(), text) != key.choices.end()) return text;
   std::string hint = did_you_mean(text, key.choices);
+  const std::string expected = expected_names(key, hint);
   if (!hint.empty() && !key.hint.empty()) hint += ' ';
-  throw ConfigError(
-      {node.where, "unknown name in " + key.path(), quote_text(text), join_choices(key.choices), hint + key.hint});
+  throw ConfigError({node.where, "unknown name in " + key.path(), quote_text(text), expected, hint + key.hint});
 }
 
 void check_count(const KeyInfo& key, const ConfigNode& node, std::size_t count) {

@@ -37,7 +37,7 @@ void check_measure(const Pipeline& pipeline) {
     if (!measurement.conflict) continue;
     if (const auto conflict = measurement.conflict(options))
       throw ConfigError({pipeline.location("measure." + name + '.' + conflict->option),
-                         "measure." + name + '.' + conflict->option + " does not go with other options",
+                         "measure." + name + '.' + conflict->option + " does not fit",
                          conflict->found,
                          conflict->expected,
                          {}});

@@ -42,12 +42,12 @@ ContactNames names_of_map(const ColumnMap& columns) {
 ContactNames plain_names(const ColumnFinder& finder) {
   ContactNames names{"id1", "id2", {Names3{"fx", "fy", "fz"}, {}, {}}, {}};
   if (!finder.has("id1") || !finder.has("id2") || !finder.has_all(*names.force.total))
-    throw InputError(
-        {finder.location(), "what the columns of the contact dump mean is not known", finder.names(),
-         "columns named id1 id2 fx fy fz",
-         "Say it in the pipeline file: input.contacts.compute lists the keywords of the LIGGGHTS compute "
-         "pair/gran/local that made the dump, or input.contacts.columns gives the column names of id1, id2 and force "
-         "(or normal_force and tangential_force), and of point if there is one"});
+    throw InputError({finder.location(), "what the columns of the contact dump mean is not known", finder.names(),
+                      "columns named id1 id2 fx fy fz",
+                      "Say it in the pipeline file: input.contacts.compute lists the keywords of the LIGGGHTS compute "
+                      "pair/gran/local that made the dump, input.contacts.lammps names the two computes of LAMMPS, or "
+                      "input.contacts.columns gives the column names of id1, id2 and force "
+                      "(or normal_force and tangential_force), and of point if there is one"});
   return names;
 }
 

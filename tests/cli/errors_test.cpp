@@ -10,6 +10,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 std::string with(const std::string& from, const std::string& to) {
@@ -40,7 +41,11 @@ TEST(Errors, BadPipelineFilesExitWithOne) {
   expect_refused(folder, 1,
                  AllOf(StartsWith("grainvdb: p.yaml:8: unknown key 'cutof'"), HasSubstr("Did you mean 'cutoff'?")));
   folder.write("p.yaml", with("velocity]", "velocitty]"));
-  expect_refused(folder, 1, AllOf(StartsWith("grainvdb: p.yaml:9: "), HasSubstr("Did you mean 'velocity'?")));
+  expect_refused(folder, 1,
+                 AllOf(StartsWith("grainvdb: p.yaml:9: "), HasSubstr("expected one of "),
+                       HasSubstr("Did you mean 'velocity'?"), Not(HasSubstr("temperature"))));
+  folder.write("p.yaml", with("velocity]", "xyz]"));
+  expect_refused(folder, 1, AllOf(HasSubstr("expected phi, density, "), HasSubstr("temperature")));
   folder.write("p.yaml", with("0.5", "-0.5"));
   expect_refused(folder, 1,
                  StartsWith("grainvdb: p.yaml:7: lattice.voxel is too small; found '-0.5'; expected a number > 0"));

@@ -1,4 +1,6 @@
 /// Pipeline files made for dumps.
+#include <filesystem>
+
 #include <gmock/gmock.h>
 
 #include "cli/command.hpp"
@@ -88,6 +90,41 @@ TEST(Init, NamesTheTwoComputesOfLammps) {
   EXPECT_THAT(read_file(folder / "pipeline.yaml"), HasSubstr("  #   lammps: {ids: id, forces: force}"));
 }
 
+TEST(Init, TakesTheTwoComputesOfLammps) {
+  const Folder folder;
+  const std::vector<std::string> dumps{"init", in_repository("sample_dumps/formats/lammps.dump"), "--contacts",
+                                       in_repository("sample_dumps/formats/lammps_contacts.dump")};
+  std::vector<std::string> words = dumps;
+  words.insert(words.end(), {"--contact-lammps", "id", "force"});
+  const CommandResult made = run_command(words, folder.path());
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(made.out, "wrote pipeline.yaml with 12 fields\n");
+  EXPECT_THAT(read_file(folder / "pipeline.yaml"), HasSubstr("\n    lammps: {ids: id, forces: force} "));
+  EXPECT_EQ(run_command({"run", "pipeline.yaml", "-o", "out"}, folder.path()).exit_code, 0);
+}
+
+TEST(Init, RefusesComputesThatDoNotFitTheDumps) {
+  const Folder folder;
+  const std::string sample = in_repository("sample_dumps/");
+  const CommandResult lammps = run_command({"init", sample + "formats/lammps.dump", "--contacts",
+                                            sample + "formats/lammps_contacts.dump", "--contact-lammps", "pp", "force"},
+                                           folder.path());
+  EXPECT_EQ(lammps.exit_code, 2) << lammps.out;
+  EXPECT_THAT(lammps.err, HasSubstr("c_pp[1]"));
+  const CommandResult one = run_command({"init", sample + "formats/lammps.dump", "--contacts",
+                                         sample + "formats/lammps_contacts.dump", "--contact-lammps", "id", "-o", "x"},
+                                        folder.path());
+  EXPECT_EQ(one.exit_code, 1) << one.out;
+  EXPECT_THAT(one.err, HasSubstr("two names of computes are needed"));
+  const CommandResult liggghts =
+      run_command({"init", sample + "shear_cell/dump*", "--contacts", sample + "shear_cell/contacts*",
+                   "--contact-compute", "pos", "id", "force"},
+                  folder.path());
+  EXPECT_EQ(liggghts.exit_code, 2) << liggghts.out;
+  EXPECT_THAT(liggghts.err, HasSubstr("List every keyword of the compute"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "pipeline.yaml"));
+}
+
 TEST(Init, TakesTheBoxThatVtkFilesLack) {
   const Folder folder;
   const std::string grains = in_repository("sample_dumps/formats/liggghts_ascii_*.vtk");
@@ -133,7 +170,7 @@ TEST(Init, TakesContactsWithWalls) {
   const CommandResult unknown = run_command(words, folder.path());
   ASSERT_EQ(unknown.exit_code, 0) << unknown.err;
   EXPECT_THAT(unknown.out,
-              HasSubstr("see input.wall_contacts there; for those of LIGGGHTS\n--wall-contact-compute names them"));
+              HasSubstr("see input.wall_contacts there, or name them with\n--wall-contact-compute (LIGGGHTS).\n"));
   EXPECT_THAT(read_file(folder / "unknown.yaml"),
               AllOf(HasSubstr("\n  #   c_wl[1] c_wl[2]"), HasSubstr("\n  # wall_contacts:\n  #   files: \"")));
   EXPECT_EQ(run_command({"validate", "unknown.yaml"}, folder.path()).exit_code, 0);

@@ -96,6 +96,8 @@ TEST(Measure, RefusesWhatCannotBeMeant) {
   EXPECT_THAT(error_of(pipeline_text()), HasSubstr("there is nothing to measure"));
   EXPECT_THAT(error_of(pipeline_text() + "measure:\n  pair_corelation: {bins: 3}\n"),
               AllOf(HasSubstr("'pair_corelation'"), HasSubstr("pair_correlation")));
+  EXPECT_THAT(error_of(without_fields() + "measure:\n  pair_correlation: {lo: [0, 1]}\n"),
+              HasSubstr("measure.pair_correlation.lo does not fit; found 2 numbers; expected three numbers"));
   EXPECT_THAT(error_of(without_fields() + of_fields), HasSubstr("the section 'lattice' is missing"));
   EXPECT_THAT(error_of(without_fields() + "measure:\n  plane_profile: {axis: z}\n"),
               HasSubstr("the section 'lattice' is missing"));

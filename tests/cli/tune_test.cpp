@@ -16,7 +16,7 @@ TEST(Tune, PrintsATableAndWritesIt) {
                                        "--knobs", "lattice.voxel", "--no-picture"},
                                       folder.path());
   ASSERT_EQ(r.exit_code, 0) << r.err;
-  EXPECT_THAT(r.out, AllOf(HasSubstr("as it is"), HasSubstr("lattice.voxel="), HasSubstr("Wrote tune/tune.csv")));
+  EXPECT_THAT(r.out, AllOf(HasSubstr("as it is"), HasSubstr("lattice.voxel="), HasSubstr("\nwrote tune/tune.csv\n")));
   EXPECT_THAT(read_file(folder / "tune/tune.csv"), HasSubstr("\"\",1,"));
 }
 

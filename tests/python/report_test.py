@@ -10,6 +10,7 @@ import unittest
 import numpy as np
 
 from grainvdb import laws, open_fields, plots
+from grainvdb.page import html_table, with_error
 from support import COMMAND, at_scales, reduced, result, write_tracers
 
 PNG = b"\x89PNG\r\n\x1a\n"
@@ -35,6 +36,16 @@ class Page(html.parser.HTMLParser):
         if self._in_heading:
             self.headings.append(data)
             self._in_heading = False
+
+
+class Tables(unittest.TestCase):
+    def test_numbers_with_errors_are_numbers(self):
+        table = html_table([("width", "1.2 ± 0.05", "nan", "-", "slope of the variance against height")])
+        self.assertIn("<td>width</td><td class=n>1.2 ± 0.05</td><td class=n>nan</td><td>-</td><td class=long>slope", table)
+
+    def test_errors_have_two_digits(self):
+        self.assertEqual(with_error(0.0046213, 0.00056614), "0.004621 ± 0.00057")
+        self.assertEqual(with_error(12.5, np.nan), "12.5")
 
 
 def report(folder, *options):
