@@ -21,3 +21,8 @@ def fluidity(phi: Array, a: float, b: float, c: float, d: float) -> Array:
 def friction(inertial: Array, mu_0: float, mu_inf: float, inertial_0: float) -> Array:
     """μ(I) = μ₀ + (μ_∞ - μ₀)/(I₀/I + 1), dimensionless; I > 0."""
     return mu_0 + (mu_inf - mu_0) / (inertial_0 / np.asarray(inertial) + 1)
+
+
+def friction_text(mu_0: float, mu_inf: float, inertial_0: float) -> str:
+    """μ(I) with its parameters, for a legend."""
+    return f"μ(I) = {mu_0:.3g} … {mu_inf:.3g}, I₀ = {inertial_0:.3g}"

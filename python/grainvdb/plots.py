@@ -16,6 +16,8 @@ from .tracers import Tracers
 
 # Fields of three numbers that are no vector in space.
 TRIPLES = ("principal_stress",)
+# Part of the packing fraction inside below which a voxel is taken for one at a smeared edge.
+SMEARED = 0.7
 
 
 def label(name: str, unit: str) -> str:
@@ -99,10 +101,28 @@ def _arrows(fields: Fields, ax: Axes, vectors: Array, across: str, up: str) -> N
 
 
 def _layers(values: Array, axis: str) -> tuple[Array, Array]:
-    """Mean and standard deviation of the values in each layer of voxels across an axis; masked where there are none."""
+    """Mean and standard deviation of the values in each layer of voxels across an axis; NaN where there are none."""
     others = tuple(k for k, other in enumerate("zyx") if other != axis)
     layers = np.ma.masked_invalid(values)
-    return layers.mean(axis=others), layers.std(axis=others)
+    return layers.mean(axis=others).filled(np.nan), layers.std(axis=others).filled(np.nan)
+
+
+def scalar_error(fields: Fields, name: str, time: int = -1) -> Array | None:
+    """The standard error of what `scalar` gives, from `<name>_error`, None where the result has no such field. Components
+    are taken as uncorrelated: of a magnitude |u| it is sqrt(Σ (u_i/|u|)² e_i²), of a third of the trace sqrt(Σ e_ii²)/3."""
+    if f"{name}_error" not in fields:
+        return None
+    errors = fields.values(f"{name}_error", time).astype(float)
+    if errors.ndim == 3:
+        return errors
+    if errors.shape[3] == 9:
+        return np.linalg.norm(errors[..., [0, 4, 8]], axis=3) / 3
+    if name in TRIPLES:
+        return errors[..., 2]
+    vectors = fields.values(name, time).astype(float)[..., :3]
+    magnitude = np.linalg.norm(vectors, axis=3)
+    magnitude[magnitude == 0] = np.nan  # has no direction, and so no error to first order
+    return np.linalg.norm(vectors * errors[..., :3], axis=3) / magnitude
 
 
 def profile(fields: Fields, name: str, axis: str = "z", time: int = -1, ax: Axes | None = None) -> Axes:
@@ -113,9 +133,9 @@ def profile(fields: Fields, name: str, axis: str = "z", time: int = -1, ax: Axes
     mean, spread = _layers(values, axis)
     at = fields.axis(axis)
     ax.fill_betweenx(at, mean - spread, mean + spread, alpha=0.2, linewidth=0)
-    error = f"{name}_error"
-    if error in fields and fields.values(error, time).ndim == 3:
-        bars, _ = _layers(fields.values(error, time).astype(float), axis)
+    errors = scalar_error(fields, name, time)
+    if errors is not None:
+        bars, _ = _layers(errors, axis)
         ax.errorbar(mean, at, xerr=bars, fmt="o-", markersize=3, linewidth=1, capsize=2)
     else:
         ax.plot(mean, at, "o-", markersize=3, linewidth=1)
@@ -137,12 +157,14 @@ def scales(results: Mapping[str, Fields], name: str, axis: str = "z", time: int 
     return ax
 
 
-def against(fields: Fields, x: str, y: str, time: int = -1, ax: Axes | None = None) -> Axes:
-    """One field against another, a point per voxel where both are defined, coloured by height."""
+def against(fields: Fields, x: str, y: str, time: int = -1, ax: Axes | None = None, where: Array | None = None) -> Axes:
+    """One field against another, a point per voxel where both are defined, and `where` they count, coloured by height."""
     ax = ax or plt.subplots()[1]
     (a, x_label), (b, y_label) = scalar(fields, x, time), scalar(fields, y, time)
     height = np.broadcast_to(fields.axis("z")[:, None, None], a.shape)
     both = np.isfinite(a) & np.isfinite(b)
+    if where is not None:
+        both &= where
     points = ax.scatter(a[both], b[both], c=height[both], s=4, linewidth=0, alpha=0.6, rasterized=True)
     ax.figure.colorbar(points, ax=ax, label=label("z", fields.unit("z")))
     if both.any():
@@ -153,10 +175,22 @@ def against(fields: Fields, x: str, y: str, time: int = -1, ax: Axes | None = No
     return ax
 
 
+def smeared_below(fields: Fields, time: int = -1) -> float:
+    """The packing fraction below which a voxel is taken to lie where the kernel smears the edge of the material: `SMEARED`
+    of the 90th percentile over the voxels with material; 0 in a result without φ, or without material."""
+    phi = fields.values("phi", time) if "phi" in fields else np.zeros(1)
+    filled = phi[phi > 0]
+    return SMEARED * float(np.percentile(filled, 90)) if filled.size else 0.0
+
+
+def _inside(fields: Fields, time: int) -> Array | None:
+    return fields.values("phi", time) >= smeared_below(fields, time) if "phi" in fields else None
+
+
 def fluidity_against_phi(fields: Fields, time: int = -1, ax: Axes | None = None,
-                         fitted: tuple[float, float, float, float] | None = None) -> Axes:
-    """g d/δv against φ with the law (3) and, when given, fitted parameters of (A20)."""
-    ax = against(fields, "phi", "gd_over_dv", time, ax)
+                         fitted: tuple[float, ...] | None = None) -> Axes:
+    """g d/δv against φ away from smeared edges, with the law (3) and, when given, fitted parameters of (A20)."""
+    ax = against(fields, "phi", "gd_over_dv", time, ax, _inside(fields, time))
     low, high = ax.get_xlim()
     phi = np.linspace(low, high, 400)
     ax.plot(phi, laws.fluidity(phi, *laws.FLUIDITY_3), "k-", linewidth=1.2, label="(3)")
@@ -168,15 +202,19 @@ def fluidity_against_phi(fields: Fields, time: int = -1, ax: Axes | None = None,
     return ax
 
 
-def friction_against_inertial(fields: Fields, time: int = -1, ax: Axes | None = None) -> Axes:
-    """μ against I with the law μ(I)."""
-    ax = against(fields, "inertial_number", "mu", time, ax)
+def friction_against_inertial(fields: Fields, time: int = -1, ax: Axes | None = None,
+                              fitted: tuple[float, ...] | None = None) -> Axes:
+    """μ against I away from smeared edges, with the law μ(I) of common and, when given, of fitted parameters."""
+    inside = _inside(fields, time)
+    ax = against(fields, "inertial_number", "mu", time, ax, inside)
     values = fields.values("inertial_number", time)
-    positive = values[np.isfinite(values) & (values > 0)]
+    positive = values[np.isfinite(values) & (values > 0) & (True if inside is None else inside)]
     if positive.size:
         low, high = np.percentile(positive, [1, 100])
         inertial = np.geomspace(low, high, 200)
-        ax.plot(inertial, laws.friction(inertial, *laws.INERTIAL), "k-", linewidth=1.2, label="μ(I) = {} … {}, I₀ = {}".format(*laws.INERTIAL))
+        ax.plot(inertial, laws.friction(inertial, *laws.INERTIAL), "k-", linewidth=1.2, label=laws.friction_text(*laws.INERTIAL))
+        if fitted:
+            ax.plot(inertial, laws.friction(inertial, *fitted), "r--", linewidth=1.2, label="fitted: " + laws.friction_text(*fitted))
         ax.set(xscale="log", xlim=(low, high))
         ax.legend()
     ax.set(xlabel="inertial number I", ylabel="μ")

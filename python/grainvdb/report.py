@@ -9,16 +9,18 @@ import argparse
 import contextlib
 import html
 import json
+import math
 import os
 import re
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
-from . import hdf, plots
+from . import hdf, lawplots, plots
 from .beside import write_comparison
 from .fields import AXES, Fields
 from .page import (FIELDS_FIRST, PROFILES_FIRST, Draw, Page, html_table, number, ordered, panels, provenance,
@@ -67,7 +69,7 @@ def _slices(page: Page, fields: Fields, axis: str, index: int) -> None:
 def _profiles(page: Page, fields: Fields, axis: str) -> None:
     names = ordered(fields.names, PROFILES_FIRST)
     draw = [lambda ax, n=n: plots.profile(fields, n, axis, ax=ax) for n in names]
-    caption = f"Means over each layer of voxels across {axis}; the band is the spread of the voxels of a layer, bars the standard error over time where it was asked for."
+    caption = f"Means over each layer of voxels across {axis}; the band is the spread of the voxels of a layer, bars the standard error over time where it was asked for, of magnitudes and means of components from the errors of the components, taken as uncorrelated."
     page.add("Profiles", page.picture("profiles", panels(draw, 3, (3.6, 3.2)), caption))
 
 
@@ -81,18 +83,38 @@ def _scales(page: Page, results: Mapping[str, Fields], axis: str) -> None:
     page.add("Scales", page.picture("scales", figure, caption))
 
 
-def _rheology(page: Page, fields: Fields, fitted: tuple[float, float, float, float] | None) -> None:
+@dataclass(frozen=True)
+class _Fitted:
+    """Parameters of laws to draw dashed over the voxels, and what they come from."""
+
+    fluidity: tuple[float, ...] | None
+    fluidity_from: str
+    friction: tuple[float, ...] | None
+
+
+def _fitted_laws(tables: Mapping[str, Table] | None, given: tuple[float, float, float, float] | None) -> _Fitted:
+    """Those given come before those of the tables."""
+    measured = lawplots.parameters(tables, "fluidity", lawplots.FLUIDITY)
+    return _Fitted(given or measured, "given with --fitted" if given else "fitted in table fluidity",
+                   lawplots.parameters(tables, "rheology", lawplots.FRICTION))
+
+
+def _rheology(page: Page, fields: Fields, fitted: _Fitted) -> None:
     draw: list[Draw] = []
     said = []
     if "phi" in fields and "gd_over_dv" in fields:
-        draw.append(lambda ax: plots.fluidity_against_phi(fields, fitted=fitted, ax=ax))
-        said.append("left: granular fluidity in dimensionless form against packing fraction, with the law (3) for friction 0.4")
+        draw.append(lambda ax: plots.fluidity_against_phi(fields, fitted=fitted.fluidity, ax=ax))
+        said.append("Granular fluidity in dimensionless form against packing fraction, with the law (3) for friction 0.4" +
+                    (f"; dashed: (A20) with the parameters {fitted.fluidity_from}." if fitted.fluidity else "."))
     if "mu" in fields and "inertial_number" in fields:
-        draw.append(lambda ax: plots.friction_against_inertial(fields, ax=ax))
-        said.append("stress ratio against inertial number, with μ(I) of common parameters")
+        draw.append(lambda ax: plots.friction_against_inertial(fields, fitted=fitted.friction, ax=ax))
+        said.append("Stress ratio against inertial number, with μ(I) of common parameters" +
+                    ("; dashed: of those fitted in table rheology, for rigid grains." if fitted.friction else "."))
     if draw:
-        caption = "; ".join(said) + ". A point per voxel; the laws are drawn to compare with, not fitted" + (", but for the dashed one." if fitted else ".")
-        page.add("Rheology", page.picture("rheology", panels(draw, 2, (5.4, 4)), caption))
+        said.append("A point per voxel; solid laws are drawn to compare with, not fitted.")
+        if "phi" in fields:
+            said.append(f"Left out are voxels with φ below {number(plots.smeared_below(fields))}, {plots.SMEARED} of the 90th percentile: there the kernel smears the edge of the material.")
+        page.add("Rheology", page.picture("rheology", panels(draw, 2, (5.4, 4)), " ".join(said)))
 
 
 def _mask(page: Page, fields: Fields) -> None:
@@ -118,6 +140,14 @@ def _tracers(page: Page, tracers: Tracers) -> None:
     page.add("Tracers", *parts)
 
 
+def _table_caption(table: Table) -> str:
+    said = [f"Table {table.name}; bars are standard errors."]
+    if lawplots.law_panels(table):
+        said.append("Dashed: laws fitted here; solid: to compare with, not fitted; both are drawn at the places that were measured.")
+    said += [f"{law}: the fit was refused, and there is no line." for law in lawplots.without_fit(table)]
+    return " ".join(said)
+
+
 def _measured(page: Page, table: Table) -> None:
     parts = [f"<p>{html.escape(table.description)}: {html.escape(table.equation)}</p>"]
     parts += [f"<p>Note: {html.escape(remark)}</p>" for remark in table.remarks]
@@ -129,8 +159,10 @@ def _measured(page: Page, table: Table) -> None:
         draw = [partial(plots.table_map, table, c) for c in drawn if c != table.columns[1]]
         parts.append(page.picture(f"table_{table.name}", panels(draw, 3, (3.9, 3.9)), f"Table {table.name}; blank: no value."))
     elif drawn and len(table[table.columns[0]]) > 1:
-        draw = [partial(plots.table_column, table, c) for c in drawn]
-        parts.append(page.picture(f"table_{table.name}", panels(draw, 3, (3.9, 2.9)), f"Table {table.name}; bars are standard errors."))
+        overlaid = lawplots.law_panels(table)
+        apart = [c for c in drawn if not any(c in panel.columns for panel in overlaid)]
+        draw = [partial(lawplots.measured_with_laws, table, panel) for panel in overlaid] + [partial(plots.table_column, table, c) for c in apart]
+        parts.append(page.picture(f"table_{table.name}", panels(draw, 3, (3.9, 2.9)), _table_caption(table)))
     page.add(f"Measured: {table.name.replace('_', ' ')}", *parts)
 
 
@@ -183,6 +215,7 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
     page = Page(f"grainvdb: {os.path.basename(os.path.abspath(folder))}")
     with contextlib.ExitStack() as stack:
         origin: dict[str, str] = {}
+        tables = stack.enter_context(Tables(folder)) if have["tables.h5"] else None
         if at_scales:
             results = {name: stack.enter_context(Fields(os.path.join(folder, name))) for name in at_scales}
             _scales(page, results, axis)
@@ -194,15 +227,14 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
             index = plots.middle(fields, cut) if at is None else int(np.argmin(np.abs(fields.axis(cut) - at)))
             _slices(page, fields, cut, index)
             _profiles(page, fields, axis)
-            _rheology(page, fields, fitted)
+            _rheology(page, fields, _fitted_laws(tables, fitted))
             _mask(page, fields)
             _field_table(page, fields)
         if have["tracers.h5"]:
             tracers = stack.enter_context(Tracers(folder))
             origin = origin or tracers.provenance
             _tracers(page, tracers)
-        if have["tables.h5"]:
-            tables = stack.enter_context(Tables(folder))
+        if tables:
             origin = origin or tables.provenance
             for table in tables.values():
                 _measured(page, table)
@@ -213,8 +245,25 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
     return list(write(page, output))
 
 
+class _Parser(argparse.ArgumentParser):
+    """Refuses as the command does: bad usage is exit code 1."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(1, f"grainvdb: {message}\nRun 'grainvdb report --help' for usage.\n")
+
+
+def _finite(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a finite number, found '{text}'")
+    return value
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="grainvdb report", description="Makes one self-contained HTML page, and PNG pictures, from a result.",
+    parser = _Parser(prog="grainvdb report", description="Makes one self-contained HTML page, and PNG pictures, from a result.",
                                      epilog="Example: grainvdb report output && xdg-open output/report/report.html")
     parser.add_argument("folder", metavar="DIR", help="the output folder of a run, with fields.hdf, tracers.h5 or tables.h5, or a folder for each scale")
     parser.add_argument("--beside", nargs="+", metavar="OTHER", help="other results to set beside this one, in one page")
@@ -222,8 +271,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("-o", "--output", metavar="DIR", help="where the report goes; DIR/report, or DIR/beside, unless given")
     parser.add_argument("--axis", choices=AXES, default="z", help="axis of the profiles (default: %(default)s)")
     parser.add_argument("--cut", choices=AXES, help="axis across which slices are taken; the one with the fewest voxels unless given")
-    parser.add_argument("--at", type=float, metavar="X", help="where the slices are taken along that axis; in the fullest layer unless given")
-    parser.add_argument("--fitted", type=float, nargs=4, metavar=("A", "B", "C", "D"), help="parameters of (A20) to draw beside (3)")
+    parser.add_argument("--at", type=_finite, metavar="X", help="where the slices are taken along that axis; in the fullest layer unless given")
+    parser.add_argument("--fitted", type=_finite, nargs=4, metavar=("A", "B", "C", "D"), help="parameters of (A20) to draw beside (3), instead of those in table fluidity")
     options = parser.parse_args(arguments)
     if options.label and len(options.label) != len(options.beside or []) + 1:
         parser.error("--label names each result once: DIR, then those of --beside")
