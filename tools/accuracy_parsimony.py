@@ -1,11 +1,10 @@
-"""What it saves to compute no more than is asked for, measured by tools/accuracy: time and memory of a run that asks for less
+"""What it saves to compute no more than is asked for, measured by tools/accuracy: processor time and memory of a run that asks for less
 beside one that asks for more, and how far the fields that both have differ."""
 import re
-import time
 
 import numpy as np
 
-from accuracy_runs import call
+from accuracy_runs import timed_call
 from grainvdb import open_fields, open_tables
 
 FLOW = ["phi", "velocity", "mean_diameter", "temperature", "shear_rate"]
@@ -27,16 +26,18 @@ PAIRS = [
     ("contacts", "stress; no contacts are read", wanted(FLOW + ROTATION), wanted(EVERYTHING)),
     ("region", "what lies outside one of the cells: `region`", wanted(EVERYTHING, region=ONE_CELL), wanted(EVERYTHING)),
 ]
-PROFILES = {"plane_profile": f"{{plane_profile: {{axis: z, {HEIGHTS}}}}}",
-            "profile": f"{{profile: {{axis: z, {HEIGHTS}, fields: [phi, velocity, mean_diameter]}}}}"}
+# The same T from both: about the velocity averaged over planes.
+PROFILES = {"plane_profile": {"measure": f"{{plane_profile: {{axis: z, {HEIGHTS}}}}}"},
+            "profile": {"measure": f"{{profile: {{axis: z, {HEIGHTS}, fields: [phi, velocity, mean_diameter, temperature]}}}}",
+                        "stages.temperature.mode": "two_pass_profile"}}
+VOXELS = {"d/2": 0.4e-3, "d/4": 0.2e-3}  # of the profiles [m]
 
 
 def run(options, verb, folder, keys):
-    """Seconds, and the peak memory in MB."""
+    """Seconds of processor time, and the peak memory in MB."""
     words = [word for key, value in keys.items() for word in ("--set", f"{key}={value}")]
-    before = time.perf_counter()
-    summary = call(options, verb, "--threads", str(options.threads), "--output", folder, *words)
-    return time.perf_counter() - before, float(re.search(r"^memory: ([\d.]+) MB at most", summary, re.MULTILINE).group(1))
+    seconds, summary = timed_call(options, verb, "--output", folder, *words)
+    return seconds, float(re.search(r"^memory: ([\d.]+) MB at most", summary, re.MULTILINE).group(1))
 
 
 def repeated(options, verb, folders, settings):
@@ -65,13 +66,13 @@ def of_profiles(marginal, grids):
     with open_tables(marginal) as less, open_tables(grids) as more:
         exact, found = more["profile"], less["plane_profile"]
         heights = exact["z"]
-        return {name: difference(np.interp(heights, found["z"], found[name]), exact[name]) for name in ("phi", "velocity_x")}
+        return {name: difference(np.interp(heights, found["z"], found[name]), exact[name]) for name in ("phi", "velocity_x", "temperature")}
 
 
 def measure(options, folder):
     """The table, on the dumps in the folder."""
     dumps = {"input.particles": f"{folder}/dump*.liggghts", "input.contacts.files": f"{folder}/contacts*.liggghts"}
-    lines = ["| what is not computed | time | memory | largest difference |", "|---|---|---|---|"]
+    lines = ["| what is not computed | processor time | memory | largest difference |", "|---|---|---|---|"]
 
     def row(name, pair, error):
         (less, less_memory), (more, more_memory) = pair
@@ -83,7 +84,8 @@ def measure(options, folder):
         error = of_fields(*folders)
         row(asked, pair, "none" if error == 0 else f"{error:.1e}")
     folders = [folder / name for name in PROFILES]
-    pair = repeated(options, "measure", folders, [dumps | {"measure": text} for text in PROFILES.values()])
-    errors = ", ".join(f"{name} {error:.1e}" for name, error in of_profiles(*folders).items())
-    row("grids: `plane_profile` beside `profile`", pair, errors)
+    for name, voxel in VOXELS.items():
+        pair = repeated(options, "measure", folders, [dumps | keys | {"lattice.voxel": voxel} for keys in PROFILES.values()])
+        errors = ", ".join(f"{field} {error:.1e}" for field, error in of_profiles(*folders).items())
+        row(f"grids, h = {name}: `plane_profile` beside `profile`", pair, errors)
     return "\n".join(lines)

@@ -1,6 +1,7 @@
 """Runs of the shear cell in sample_dumps, and copies of it side by side, for tools/accuracy."""
 import gzip
 import pathlib
+import resource
 import subprocess
 import sys
 
@@ -13,6 +14,14 @@ def call(options, verb, *words):
     if result.returncode != 0:
         sys.exit(f"accuracy: {result.stderr.strip()}")
     return result.stdout
+
+
+def timed_call(options, verb, *words):
+    """Seconds of processor time, user and system, which other work of the machine lengthens little; and what the call prints."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    text = call(options, verb, "--threads", str(options.threads), *words)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime, text
 
 
 class Dump:

@@ -33,6 +33,7 @@ struct Trial {
   std::string refused{};             ///< why it cannot be run; empty when it was
 
   double best_seconds() const;
+  double worst_seconds() const;
   /// What it sets, "as it is" for the current setting.
   std::string name() const;
 };
@@ -69,8 +70,8 @@ struct TuneReport {
   std::vector<std::string> not_compared;  ///< wanted fields without a norm: directions, counts
   std::vector<Trial> trials;              ///< the current setting first
   std::vector<bool> front;                ///< of each trial: no other is both faster and closer (see score)
-  std::size_t proposed = 0;               ///< of the trials; the current one where nothing cheaper is good enough
-  bool proposal_meets = false;            ///< whether the proposed trial keeps to the tolerances
+  std::size_t proposed = 0;     ///< of the trials; the current one where it is good enough and none is surely cheaper
+  bool proposal_meets = false;  ///< whether the proposed trial keeps to the tolerances
 };
 
 /// What is tried unless the user says otherwise: the voxel size (×½ … 2, as periods allow), the line integral, the

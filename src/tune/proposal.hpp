@@ -30,8 +30,9 @@ struct Combination {
 std::vector<Combination> promising(const std::vector<Trial>& trials, const std::vector<std::string>& knob_of,
                                    const Tolerances& tolerance, std::size_t most);
 
-/// The fastest trial that meets the tolerances and sets only what they say something about, the current one (0) where
-/// there is none or nothing faster than it.
+/// The fastest trial that meets the tolerances and sets only what they say something about. Where the current one (0)
+/// meets them too, it stays unless every repeat of the other took less time than its fastest; so it does where there is
+/// none.
 std::size_t choose(const std::vector<Trial>& trials, const Tolerances& tolerance);
 
 }  // namespace grainvdb

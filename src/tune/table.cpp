@@ -122,7 +122,8 @@ std::string proposal(const TuneReport& report, const std::map<std::string, doubl
   }
   const Trial& best = report.trials[report.proposed];
   if (best.set.empty())
-    return "The current setting is the fastest of those tried that keep to " + tolerances(tolerance) + ".\n";
+    return "The current setting keeps to " + tolerances(tolerance) +
+           ", and none of those tried that do was faster in every repeat.\n";
   std::string text = "The fastest of those tried that keep to " + tolerances(tolerance) + ": " +
                      number(best.best_seconds()) + " s, " + number(best.best_seconds() / now.best_seconds(), 2) +
                      " of the time now\n ";
@@ -151,9 +152,9 @@ std::string to_csv(const TuneReport& report, const std::map<std::string, double>
     const bool chosen = t == report.proposed && !tolerance.empty() && report.proposal_meets;
     for (const FieldError& e : trial.errors) {
       text << '"' << (trial.set.empty() ? "" : trial.name()) << "\"," << (t == 0) << ',' << chosen << ','
-           << report.front[t] << ',' << trial.best_seconds() << ','
-           << *std::max_element(trial.seconds.begin(), trial.seconds.end()) << ',' << trial.seconds.size() << ','
-           << e.field << ',' << e.rms << ',' << e.largest << ',' << e.points << ',' << e.undefined << ',';
+           << report.front[t] << ',' << trial.best_seconds() << ',' << trial.worst_seconds() << ','
+           << trial.seconds.size() << ',' << e.field << ',' << e.rms << ',' << e.largest << ',' << e.points << ','
+           << e.undefined << ',';
       if (const auto it = tolerance.find(e.field); it != tolerance.end()) text << it->second;
       text << '\n';
     }

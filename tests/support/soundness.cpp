@@ -48,6 +48,12 @@ std::uint32_t undefined_by(const std::string& field) {
   return it == known.end() ? 0 : it->second;
 }
 
+/// The field of which this is the standard error; empty for any other.
+std::string error_of(const std::string& field) {
+  const std::string ending = "_error";
+  return field.ends_with(ending) ? field.substr(0, field.size() - ending.size()) : std::string();
+}
+
 bool cannot_be_negative(const std::string& field) {
   static const std::set<std::string> names{"phi",
                                            "density",
@@ -67,7 +73,7 @@ bool cannot_be_negative(const std::string& field) {
                                            "dv_over_d_domega",
                                            "mu_mohr_coulomb",
                                            "coaxiality_angle"};
-  return names.contains(field);
+  return names.contains(field) || !error_of(field).empty();
 }
 
 /// The first fault of each kind, with the number of its kind.
@@ -95,7 +101,7 @@ class Faults {
 
 void check_field(const Written& w, const std::string& name, const FieldCopy& f, Faults& faults) {
   const std::uint32_t says_nothing = bits({Reason::one_sided_gradient});
-  const std::uint32_t own = undefined_by(name);
+  const std::uint32_t own = undefined_by(name) | bits({Reason::behind_wall, Reason::near_wall});
   for (std::size_t l = 0; l < f.topology->leaf_count(); ++l)
     for (int v = 0; v < leaf_size; ++v) {
       const Coord c = voxel_at(f.topology->origin(l), v);
@@ -114,6 +120,20 @@ void check_field(const Written& w, const std::string& name, const FieldCopy& f, 
         if (x < 0 && cannot_be_negative(name)) faults.add(name + ": negative", c, x, mask);
       }
     }
+}
+
+void check_error(const Written& w, const std::string& name, const FieldCopy& error, Faults& faults) {
+  const FieldCopy& field = w.field(error_of(name));
+  error.for_each_active([&](const Coord& c) {
+    const std::uint32_t mask = w.mask_at(c);
+    for (int k = 0; k < error.meta.components; ++k) {
+      const float x = error.at(c, k);
+      const bool undefined = std::isnan(field.at(c, k));
+      if (undefined && !std::isnan(x)) faults.add(name + ": a number where the field has none", c, x, mask);
+      if (!undefined && std::isnan(x) && (mask & bits({Reason::few_blocks})) == 0)
+        faults.add(name + ": NaN without few_blocks", c, x, mask);
+    }
+  });
 }
 
 void check_counts(const Result& r, Faults& faults) {
@@ -138,6 +158,7 @@ std::vector<std::string> unsoundness(const Result& result) {
     for (const auto& [name, field] : w.fields) {
       if (std::isnan(field.meta.background) && !w.has_mask) faults.add(name + ": written without a mask");
       check_field(w, name, field, faults);
+      if (w.has_mask && w.fields.contains(error_of(name))) check_error(w, name, field, faults);
     }
   check_counts(result, faults);
   return faults.texts();

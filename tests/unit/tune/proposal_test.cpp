@@ -59,6 +59,28 @@ TEST(Proposal, TheFastestThatIsGoodEnough) {
   EXPECT_EQ(choose(trials, {}), 0U);
 }
 
+// Times that overlap are no reason to change what is good enough as it is; to change what is not, they are.
+TEST(Proposal, NothingWithinTheNoiseOfTheTimes) {
+  std::vector<Trial> close{trial({}, 0, {{"phi", 0.01}}), trial({"h=2"}, 0, {{"phi", 0.02}})};
+  close[0].seconds = {1.0, 1.3};
+  close[1].seconds = {0.7, 1.1};
+  EXPECT_EQ(choose(close, {{"phi", 0.05}}), 0U) << "the fastest repeat was that of h=2, the slowest was not";
+  close[1].seconds = {0.7, 1.0};
+  EXPECT_EQ(choose(close, {{"phi", 0.05}}), 0U) << "one as fast as the current one's fastest";
+  close[1].seconds = {0.7, 0.99};
+  EXPECT_EQ(choose(close, {{"phi", 0.05}}), 1U);
+  close[0].errors[0].rms = 0.06;
+  close[1].seconds = {0.7, 5.0};
+  EXPECT_EQ(choose(close, {{"phi", 0.05}}), 1U) << "the current one is not good enough";
+}
+
+// What comes out is the fastest of the others that are surely faster, not the fastest whose times overlap.
+TEST(Proposal, TheFastestThatIsSurelyFaster) {
+  std::vector<Trial> some = trials;
+  some[1].seconds = {4, 11};
+  EXPECT_EQ(choose(some, {{"phi", 0.05}, {"mu", 0.06}}), 3U);
+}
+
 // h=2 with l=g: 4 · 6/10 = 2.4 s, mu² = 0.05² + 2 (0.06² - 0.05²) = 0.0047, mu = 0.0686, phi as h=2 alone.
 TEST(Proposal, CombinationsThatPromiseTheMost) {
   const Tolerances loose{{"phi", 0.05}, {"mu", 0.07}};

@@ -42,6 +42,12 @@ TEST(TuneTable, SaysWhereNothingIsGoodEnough) {
   EXPECT_THAT(describe(r, {}), AllOf(HasSubstr("--tolerance phi=1e-3"), Not(HasSubstr("Nothing that"))));
 }
 
+TEST(TuneTable, SaysWhereTheCurrentSettingStays) {
+  TuneReport r = report();
+  r.proposed = 0;
+  EXPECT_THAT(describe(r, {{"phi", 0.05}}), HasSubstr("The current setting keeps to phi 0.05, and none of those"));
+}
+
 TEST(TuneTable, HasARowPerSettingAndField) {
   EXPECT_EQ(
       to_csv(report(), {{"phi", 0.05}}),
