@@ -179,6 +179,10 @@ def _measured(page: Page, name: str, tables: Mapping[str, Table]) -> None:
     first = next(iter(tables.values()))
     parts = [f"<p>{html.escape(first.description)}: {html.escape(first.equation)}</p>"]
     parts += [f"<p>Note on {html.escape(label)}: {html.escape(remark)}</p>" for label, table in tables.items() for remark in table.remarks]
+    if name.startswith("collapse_"):
+        alone = ", ".join(f"{html.escape(label)} {number(t.numbers['collapse'].value)}" for label, t in tables.items())
+        parts.append(f"<p>Collapse, the part of the variance that the packing fraction tells: alone {alone}; "
+                     f"of all together {number(compare.collapse_of(tables).told)}. Curves that lie apart do not collapse.</p>")
     drawn = compare.shared_columns(tables)
     if all(plots.is_map(table) for table in tables.values()):
         drawn = [c for c in drawn if c != first.columns[1]]

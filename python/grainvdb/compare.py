@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 
 from . import hdf, plots
 from .arrays import Array
+from .collapse import Collapse, Curve, collapse_of_runs
 from .fields import AXES, Fields
 from .tables import Number, Table, Tables
 from .tracers import Tracers
@@ -139,6 +140,11 @@ def shared_columns(tables: Mapping[str, Table]) -> list[str]:
     first = next(iter(tables.values()))
     return [c for c in first.columns[1:] if not c.endswith("_error") and all(c in t.columns for t in tables.values())
             and any(np.any(np.isfinite(t[c])) for t in tables.values())]
+
+
+def collapse_of(tables: Mapping[str, Table]) -> Collapse:
+    """The tables of the measurement `collapse` as if the voxels of all results had been binned at once (collapse_of_runs)."""
+    return collapse_of_runs([Curve(t["phi"], t["mean"], t["spread"], t["points"]) for t in tables.values()])
 
 
 def columns(tables: Mapping[str, Table], name: str, ax: Axes | None = None, against: str | None = None) -> Axes:

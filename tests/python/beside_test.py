@@ -68,6 +68,18 @@ class SideBySide(unittest.TestCase):
                         self.assertEqual(row[5], "-")
         self.assertIn(("coordination", "coordination"), rows)
 
+    def test_curves_that_lie_apart_do_not_collapse(self):
+        def curve(shift):
+            phi = np.array([0.55, 0.56, 0.57])
+            return {"phi": phi, "mean": shift + 100 * (phi - 0.56), "spread": np.full(3, 0.1), "points": np.full(3, 50)}
+
+        same = compare.collapse_of({"one": curve(0), "two": curve(0)}).told
+        # 300 values about their bins' means, sd 0.1, of a variance of 2/3.
+        self.assertAlmostEqual(same, 1 - 0.01 / (2 / 3 + 0.01), delta=0.001)
+        apart = compare.collapse_of({"one": curve(0), "two": curve(4)}).told
+        # Half the distance of the curves, squared, joins the scatter.
+        self.assertAlmostEqual(apart, 1 - 4.01 / (2 / 3 + 4.01), delta=0.01)
+
     def test_a_result_differs_from_itself_by_nothing(self):
         same = {"one": compare.open_result(self.dem), "two": compare.open_result(self.dem)}
         for row in beside.number_rows(compare.common_tables(same)):
