@@ -152,9 +152,9 @@ def columns(tables: Mapping[str, Table], name: str, ax: Axes | None = None, agai
     ax = ax or plt.subplots()[1]
     for label, table in tables.items():
         x = against or table.columns[0]
-        bars = table[f"{name}_error"] if f"{name}_error" in table.columns else None
+        ends = plots.error_bars(table[name], table[f"{name}_error"] if f"{name}_error" in table.columns else None)
         line = ".-" if np.all(np.diff(table[x]) > 0) else "."
-        ax.errorbar(table[x], table[name], yerr=bars, fmt=line, ms=4, lw=0.9, elinewidth=0.8, label=label)
+        ax.errorbar(table[x], table[name], yerr=ends, fmt=line, ms=4, lw=0.9, elinewidth=0.8, label=label)
         ax.set(xlabel=plots.label(x, table.unit(x)), ylabel=plots.label(name, table.unit(name)))
     ax.grid(alpha=0.3)
     return ax

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 
 from . import laws
 from .arrays import Array
+from .plots import error_bars
 from .tables import Table
 
 #: The numbers of table `fluidity` that are the parameters of (A20), and those of `rheology` of μ(I).
@@ -57,7 +58,7 @@ def parameters(tables: Mapping[str, Table] | None, name: str, symbols: tuple[str
 
 def _errors(table: Table, column: str, rows: Array) -> Array | None:
     error = f"{column}_error"
-    return table[error][rows] if error in table.columns else None
+    return error_bars(table[column][rows], table[error][rows] if error in table.columns else None)
 
 
 def measured_with_laws(table: Table, panel: Panel, ax: Axes | None = None) -> Axes:
@@ -75,7 +76,8 @@ def measured_with_laws(table: Table, panel: Panel, ax: Axes | None = None) -> Ax
         if drawn.any():
             order = np.argsort(x[drawn])
             ax.plot(x[drawn][order], table[column][drawn][order], style, linewidth=1.2, label=text)
-    ax.set(xlabel=panel.x_label, ylabel=panel.y_label)
+    decades = panel.x == "inertial_number" and 0 < 10 * x.min() < x.max()
+    ax.set(xlabel=panel.x_label, ylabel=panel.y_label, xscale="log" if decades else "linear")
     ax.legend(fontsize="small")
     ax.grid(alpha=0.3)
     return ax

@@ -17,7 +17,7 @@ from .tracers import Tracers
 # Fields of three numbers that are no vector in space.
 TRIPLES = ("principal_stress",)
 # Part of the packing fraction inside below which a voxel is taken for one at a smeared edge.
-SMEARED = 0.7
+SMEARED = 0.8
 
 
 def label(name: str, unit: str) -> str:
@@ -125,20 +125,22 @@ def scalar_error(fields: Fields, name: str, time: int = -1) -> Array | None:
     return np.linalg.norm(vectors * errors[..., :3], axis=3) / magnitude
 
 
+def error_bars(values: Array, errors: Array | None) -> Array | None:
+    """The errors for `Axes.errorbar`; None where no value has one, of which matplotlib would warn."""
+    return errors if errors is not None and np.any(np.isfinite(values) & np.isfinite(errors)) else None
+
+
 def profile(fields: Fields, name: str, axis: str = "z", time: int = -1, ax: Axes | None = None) -> Axes:
     """The mean over each layer across an axis, with the spread of the voxels as a band and, where the result has
-    `<name>_error`, the standard error of the mean as bars (the errors of neighbouring voxels taken as one)."""
+    `<name>_error`, the standard error of the mean as bars (`scalar_error`; the errors of neighbouring voxels taken as one)."""
     ax = ax or plt.subplots()[1]
     values, text = scalar(fields, name, time)
     mean, spread = _layers(values, axis)
     at = fields.axis(axis)
     ax.fill_betweenx(at, mean - spread, mean + spread, alpha=0.2, linewidth=0)
     errors = scalar_error(fields, name, time)
-    if errors is not None:
-        bars, _ = _layers(errors, axis)
-        ax.errorbar(mean, at, xerr=bars, fmt="o-", markersize=3, linewidth=1, capsize=2)
-    else:
-        ax.plot(mean, at, "o-", markersize=3, linewidth=1)
+    ends = error_bars(mean, None if errors is None else _layers(errors, axis)[0])
+    ax.errorbar(mean, at, xerr=ends, fmt="o-", markersize=3, linewidth=1, capsize=2)
     ax.set(xlabel=text, ylabel=label(axis, fields.unit(axis)))
     ax.grid(alpha=0.3)
     return ax
@@ -303,9 +305,9 @@ def table_column(table: Table, name: str, ax: Axes | None = None) -> Axes:
     ax = ax or plt.subplots()[1]
     first = table.columns[0]
     error = f"{name}_error"
-    bars = table[error] if error in table.columns else None
+    ends = error_bars(table[name], table[error] if error in table.columns else None)
     joined = ".-" if np.all(np.diff(table[first]) > 0) else "."
-    ax.errorbar(table[first], table[name], yerr=bars, fmt=joined, ms=4, lw=0.8, elinewidth=0.8)
+    ax.errorbar(table[first], table[name], yerr=ends, fmt=joined, ms=4, lw=0.8, elinewidth=0.8)
     ax.set_xlabel(label(first, table.unit(first)))
     ax.set_ylabel(label(name, table.unit(name)))
     return ax

@@ -108,7 +108,7 @@ def _rheology(page: Page, fields: Fields, fitted: _Fitted) -> None:
                     (f"; dashed: (A20) with the parameters {fitted.fluidity_from}." if fitted.fluidity else "."))
     if "mu" in fields and "inertial_number" in fields:
         draw.append(lambda ax: plots.friction_against_inertial(fields, fitted=fitted.friction, ax=ax))
-        said.append("Stress ratio against inertial number, with μ(I) of common parameters" +
+        said.append("Stress ratio against inertial number, with μ(I) of frictionless grains" +
                     ("; dashed: of those fitted in table rheology, for rigid grains." if fitted.friction else "."))
     if draw:
         said.append("A point per voxel; solid laws are drawn to compare with, not fitted.")

@@ -5,17 +5,35 @@ import pathlib
 import subprocess
 import tempfile
 
+import h5py
+import numpy as np
+
 ROOT = pathlib.Path(__file__).parents[2]
 COMMAND = os.environ["GRAINVDB_COMMAND"]
 _kept = tempfile.TemporaryDirectory(prefix="grainvdb-python-")
 
 
+SHEAR_FIELDS = ("phi", "velocity", "mean_diameter", "temperature", "stress", "shear_rate", "pressure", "shear_stress", "mu", "inertial_number", "fluidity",
+                "gd_over_dv")
+ERROR_FIELDS = ("phi_error", "velocity_error", "stress_error", "mu_error")
+
+
 @functools.cache
 def result(window: str = "all") -> pathlib.Path:
-    """The output folder of the shear cell pipeline, with one mean or one per `window` frames."""
+    """The output folder of the shear cell pipeline, with one mean, with standard errors, or one per `window` frames."""
     folder = pathlib.Path(_kept.name) / f"window-{window}"
-    subprocess.run([COMMAND, "run", ROOT / "pipelines/shear_cell.yaml", "--set", f"average.window={window}", "--output", folder, "--quiet"],
+    errors = ["--set", "average.blocks=5", "--set", f"output.fields=[{', '.join(SHEAR_FIELDS + ERROR_FIELDS)}]"] if window == "all" else []
+    subprocess.run([COMMAND, "run", ROOT / "pipelines/shear_cell.yaml", "--set", f"average.window={window}", *errors, "--output", folder, "--quiet"],
                    check=True)
+    return folder
+
+
+@functools.cache
+def last_alone() -> pathlib.Path:
+    """The same with the last of the five frames by itself, which has no standard errors."""
+    folder = pathlib.Path(_kept.name) / "last-alone"
+    subprocess.run([COMMAND, "run", ROOT / "pipelines/shear_cell.yaml", "--set", "average.window=4", "--set", "average.blocks=2",
+                    "--set", "output.fields=[phi, mu, mu_error]", "--output", folder, "--quiet"], check=True)
     return folder
 
 
@@ -38,11 +56,24 @@ def at_scales() -> pathlib.Path:
 
 
 @functools.cache
-def measured() -> pathlib.Path:
-    """The output folder of the shipped measurements of structure."""
-    folder = pathlib.Path(_kept.name) / "measured"
-    subprocess.run([COMMAND, "measure", ROOT / "pipelines/structure.yaml", "--output", folder, "--quiet"], check=True)
+def measured(pipeline: str = "structure") -> pathlib.Path:
+    """The output folder of shipped measurements, those of structure unless others are named."""
+    folder = pathlib.Path(_kept.name) / f"measured-{pipeline}"
+    subprocess.run([COMMAND, "measure", ROOT / f"pipelines/{pipeline}.yaml", "--output", folder, "--quiet"], check=True)
     return folder
+
+
+def write_table(path: pathlib.Path, name: str, columns: dict[str, np.ndarray], numbers: dict[str, float]) -> None:
+    """Adds a table to a tables.h5, as the library writes it."""
+    with h5py.File(path, "a") as file:
+        table = file.create_group(name)
+        table.attrs.update({"description": "made up", "equation": "y = x", "order": list(columns)})
+        for column, values in columns.items():
+            table[column] = values
+        table.create_group("numbers").attrs["order"] = list(numbers)
+        for symbol, value in numbers.items():
+            table["numbers"][symbol] = value
+            table["numbers"][symbol].attrs["long_name"] = symbol
 
 
 @functools.cache
