@@ -57,12 +57,12 @@ struct RunReport {
   std::vector<BadFrame> bad_frames;                         ///< that were left out
   std::optional<Stop> stop;                                 ///< where averaging could stop by itself
   std::optional<NarrowKernel> narrow_kernel;
-  std::vector<std::string> averaging;                       ///< what there is to say of the averages, in words
-  std::vector<std::string> walls;                           ///< where they are and what is done about them, in words
-  std::vector<std::string> files;                           ///< written, those of the tracers apart
-  std::optional<TraceReport> trace;                         ///< where there were tracers
-  std::vector<Table> tables;                                ///< of the measurements, in the units that are written
-  Provenance tables_from;                                   ///< where the tables come from
+  std::vector<std::string> averaging;  ///< what there is to say of the averages, in words
+  std::vector<std::string> walls;      ///< where they are and what is done about them, in words
+  std::vector<std::string> files;      ///< written, those of the tracers apart
+  std::optional<TraceReport> trace;    ///< where there were tracers
+  std::vector<Table> tables;           ///< of the measurements, in the units that are written
+  Provenance tables_from;              ///< where the tables come from
   ReadCounters read;
 };
 

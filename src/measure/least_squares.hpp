@@ -39,7 +39,8 @@ struct Fit {
   std::size_t rank = 0;  ///< of it: how many combinations of the parameters the data determine
 
   bool fitted() const { return refusal.empty(); }
-  /// χ² by degree of freedom: near 1 where the law describes the data within their errors. NaN where the fit was refused or has no freedom.
+  /// χ² by degree of freedom: near 1 where the law describes the data within their errors. NaN where the fit was
+  /// refused or has no freedom.
   double reduced_chi_square() const;
 };
 
