@@ -93,9 +93,4 @@ std::string dump_text(const DumpFrame& frame, std::int64_t step, const std::stri
   return text;
 }
 
-std::string dump_text(const SpotModel& model, const Snapshot& now, const std::vector<Vec3>& velocity, std::int64_t step,
-                      const std::string& units) {
-  return dump_text(make_frame(model, now, velocity), step, units);
-}
-
 }  // namespace grainvdb::spot

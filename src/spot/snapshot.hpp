@@ -33,7 +33,5 @@ DumpFrame make_frame(const SpotModel& model, const Snapshot& now, const std::vec
 
 /// Text of one frame: `id type x y z vx vy vz radius v_spot`, type 1, numbered by `step`.
 std::string dump_text(const DumpFrame& frame, std::int64_t step, const std::string& units);
-std::string dump_text(const SpotModel& model, const Snapshot& now, const std::vector<Vec3>& velocity, std::int64_t step,
-                      const std::string& units);
 
 }  // namespace grainvdb::spot

@@ -14,6 +14,7 @@
 #include "support/memory_source.hpp"
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
+#include "support/spot_parameters.hpp"
 
 namespace grainvdb::spot::calibration_test {
 namespace {
@@ -29,17 +30,9 @@ Container silo() {
   return {{{-15, 0, 0}, {15, 8, 16}, {false, true, false}}, Orifice{Orifice::Shape::slot, {0, 0}, 4}};
 }
 
-SpotParameters published() {
-  SpotParameters p;
-  p.radius = 2.6;
-  p.influence = 399;
-  p.step = {0.676, 0.676, 0.1};
-  p.hop_rate = 28;
-  p.insertion_rate = 375;
-  p.entry = SpotParameters::Entry::spread;
-  p.wall_distance = 1;
+SpotParameters unrelaxed() {
+  SpotParameters p = testing::published_spots();
   p.relaxation.every = 0;
-  p.relaxation.radius = 3.6;
   return p;
 }
 
@@ -67,7 +60,7 @@ Frame frame_of(const SpotModel& model, const Snapshot& before, const Snapshot& n
 /// The packing at rest, then frames of the flow once the first spots have left at the top.
 std::vector<Frame> spot_frames(std::size_t count) {
   const Packing packing = random_packing(silo().box, 0.58, 1, 3);
-  SpotModel model(silo(), packing, published(), 5);
+  SpotModel model(silo(), packing, unrelaxed(), 5);
   Snapshot before = take_snapshot(model);
   std::vector<Frame> frames{frame_of(model, before, before, 0)};
   model.advance(6.5);
@@ -113,7 +106,7 @@ TEST(Calibration, GivesBackWhatMadeASpotRun) {
   const Table t = testing::run(of_silo(), frames).report.tables.front();
   ASSERT_EQ(t.name, "spot_calibration");
   EXPECT_TRUE(t.remarks.empty());
-  const SpotParameters made = published();
+  const SpotParameters made = unrelaxed();
   const double share_of_parts = 0.2;  // no error is so large that anything would pass
   const auto expect = [&](const char* name, double truth) {
     const Quantity& q = number(t, name);

@@ -42,14 +42,18 @@ std::string write(const testing::TemporaryFolder& folder, const std::string& con
   return file;
 }
 
-std::string refusal(const std::vector<std::string>& overrides) {
+std::string refusal_of(const std::string& content, const std::vector<std::string>& overrides) {
   const testing::TemporaryFolder folder;
   try {
-    load_spot_run(write(folder, text), overrides);
+    load_spot_run(write(folder, content), overrides);
   } catch (const ConfigError& e) {
     return e.what();
   }
   return "nothing was refused";
+}
+
+std::string refusal(const std::vector<std::string>& overrides) {
+  return refusal_of(text, overrides);
 }
 
 TEST(SpotFile, RefusesWhatCannotBeRun) {
@@ -229,13 +233,7 @@ TEST(SpotFile, VoidsTakeTheSectionOfSpots) {
 }
 
 std::string void_refusal(const std::vector<std::string>& overrides) {
-  const testing::TemporaryFolder folder;
-  try {
-    load_spot_run(write(folder, void_text), overrides);
-  } catch (const ConfigError& e) {
-    return e.what();
-  }
-  return "nothing was refused";
+  return refusal_of(void_text, overrides);
 }
 
 TEST(SpotFile, RefusesVoidsThatCannotBeRun) {

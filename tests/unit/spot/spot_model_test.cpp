@@ -9,25 +9,13 @@
 
 #include "spot/random_packing.hpp"
 #include "spot/snapshot.hpp"
+#include "support/spot_parameters.hpp"
 
 namespace grainvdb::spot::spot_model_test {
 namespace {
 
 Container silo() {
   return {{{-7, 0, 0}, {7, 8, 14}, {false, true, false}}, Orifice{Orifice::Shape::slot, {0, 0}, 5}};
-}
-
-SpotParameters published() {
-  SpotParameters p;
-  p.radius = 2.6;
-  p.influence = 399;
-  p.step = {0.676, 0.676, 0.1};
-  p.hop_rate = 28;
-  p.insertion_rate = 375;
-  p.entry = SpotParameters::Entry::spread;
-  p.wall_distance = 1;
-  p.relaxation.radius = 3.6;
-  return p;
 }
 
 const Packing& packing() {
@@ -42,32 +30,32 @@ std::string text_after(const SpotParameters& p, std::uint64_t seed, const std::v
     model.compact();
   }
   const Snapshot now = take_snapshot(model);
-  return dump_text(model, now, velocities(now, now, model.particles().unit()), 0, "lj");
+  return dump_text(make_frame(model, now, velocities(now, now, model.particles().unit())), 0, "lj");
 }
 
 TEST(SpotModel, IsReproducibleForASeed) {
-  const std::string one = text_after(published(), 1, {2});
-  EXPECT_EQ(one, text_after(published(), 1, {2}));
-  EXPECT_EQ(one, text_after(published(), 1, {0.3, 1.1, 2}));  // however the run is cut
-  EXPECT_NE(one, text_after(published(), 2, {2}));
+  const std::string one = text_after(testing::published_spots(), 1, {2});
+  EXPECT_EQ(one, text_after(testing::published_spots(), 1, {2}));
+  EXPECT_EQ(one, text_after(testing::published_spots(), 1, {0.3, 1.1, 2}));  // however the run is cut
+  EXPECT_NE(one, text_after(testing::published_spots(), 2, {2}));
 }
 
 TEST(SpotModel, DoesNotDependOnTheOrderOfThePacking) {
   Packing reversed = packing();
   std::reverse(reversed.id.begin(), reversed.id.end());
   std::reverse(reversed.position.begin(), reversed.position.end());
-  SpotModel model(silo(), reversed, published(), 1);
+  SpotModel model(silo(), reversed, testing::published_spots(), 1);
   model.advance(2);
   const Snapshot now = take_snapshot(model);
-  EXPECT_EQ(text_after(published(), 1, {2}),
-            dump_text(model, now, velocities(now, now, model.particles().unit()), 0, "lj"));
+  EXPECT_EQ(text_after(testing::published_spots(), 1, {2}),
+            dump_text(make_frame(model, now, velocities(now, now, model.particles().unit())), 0, "lj"));
 }
 
 // One spot on its way through a packing that covers it everywhere: the particles that it holds all the time are moved
 // by -1/w of its way.
 TEST(SpotModel, AParticleMovesByMinusOneOverWOfTheSpotsStep) {
   const Box box{{0, 0, 0}, {12, 12, 12}, {true, true, true}};
-  SpotParameters p = published();
+  SpotParameters p = testing::published_spots();
   p.insertion_rate = 0;
   p.count = 1;
   p.relaxation.every = 0;
@@ -99,7 +87,7 @@ TEST(SpotModel, AParticleMovesByMinusOneOverWOfTheSpotsStep) {
 }
 
 TEST(SpotModel, AccountsForEveryParticle) {
-  SpotParameters p = published();
+  SpotParameters p = testing::published_spots();
   p.influence = 40;  // drains fast
   SpotModel model(silo(), packing(), p, 4);
   model.advance(12);
@@ -120,7 +108,7 @@ TEST(SpotModel, AccountsForEveryParticle) {
 
 TEST(SpotModel, AnEmptyContainerLetsSpotsThrough) {
   Packing few{1, {5}, {{0, 4, 0.5}}};
-  SpotParameters p = published();
+  SpotParameters p = testing::published_spots();
   p.influence = 10;
   SpotModel model(silo(), few, p, 1);
   model.advance(20);
@@ -130,7 +118,7 @@ TEST(SpotModel, AnEmptyContainerLetsSpotsThrough) {
 }
 
 TEST(SpotModel, RelaxesEveryKthStepOrByChance) {
-  SpotParameters p = published();
+  SpotParameters p = testing::published_spots();
   const auto share = [&] {
     SpotModel model(silo(), packing(), p, 5);
     model.run_events(20'000);
@@ -146,7 +134,7 @@ TEST(SpotModel, RelaxesEveryKthStepOrByChance) {
 }
 
 TEST(SpotModel, SpotsKeepTheirDistanceFromWalls) {
-  SpotParameters p = published();
+  SpotParameters p = testing::published_spots();
   p.relaxation.every = 0;
   const auto widest = [&](double distance) {
     p.wall_distance = distance;
@@ -170,7 +158,7 @@ TEST(SpotModel, ABiasLeadsSpotsTowardsParticles) {
       half.id.push_back(packing().id[i]);
       half.position.push_back(packing().position[i]);
     }
-  SpotParameters p = published();
+  SpotParameters p = testing::published_spots();
   p.relaxation.every = 0;
   const auto right = [&] {
     SpotModel model(silo(), half, p, 7);
