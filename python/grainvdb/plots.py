@@ -69,7 +69,11 @@ def colours(*values: Array) -> dict[str, object]:
 
 def layer(fields: Fields, name: str, axis: str, index: int, time: int = -1) -> Array:
     """One layer of voxels across an axis as one number per voxel, rows upwards."""
-    return np.take(scalar(fields, name, time)[0], index, axis=2 - AXES.index(axis))
+    return _layer_of(scalar(fields, name, time)[0], axis, index)
+
+
+def _layer_of(values: Array, axis: str, index: int) -> Array:
+    return np.take(values, index, axis=2 - AXES.index(axis))
 
 
 def field_slice(fields: Fields, name: str, axis: str | None = None, index: int | None = None, time: int = -1,
@@ -80,8 +84,8 @@ def field_slice(fields: Fields, name: str, axis: str | None = None, index: int |
     index = middle(fields, axis) if index is None else index
     ax = ax or plt.subplots()[1]
     across, up = [a for a in AXES if a != axis]
-    text = scalar(fields, name, time)[1]
-    shown = np.ma.masked_invalid(layer(fields, name, axis, index, time))
+    values, text = scalar(fields, name, time)
+    shown = np.ma.masked_invalid(_layer_of(values, axis, index))
     half = fields.voxel / 2
     ends = [fields.axis(a)[k] + s * half for a in (across, up) for k, s in ((0, -1), (-1, 1))]
     image = ax.imshow(shown, origin="lower", extent=ends, aspect="equal", interpolation="nearest", **(scale or colours(shown)))
