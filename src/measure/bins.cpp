@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "measure/option_values.hpp"
+
 namespace grainvdb {
 namespace {
 
@@ -56,7 +58,7 @@ std::vector<OptionInfo> bin_options() {
 BinSpec bin_spec(const OptionValues& options) {
   BinSpec spec;
   if (get<std::string>(options, "geometry") == "shells") spec.geometry = BinSpec::Geometry::shells;
-  spec.axis = get<std::string>(options, "axis")[0] - 'x';
+  spec.axis = axis_option(options, "axis");
   const auto& centre = get<std::vector<double>>(options, "centre");
   for (std::size_t a = 0; a < 3; ++a) spec.centre[a] = centre.at(a);
   spec.from = get<double>(options, "from");

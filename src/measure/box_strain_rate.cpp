@@ -19,15 +19,6 @@ namespace {
 constexpr const char* components[] = {"xx", "yy", "zz", "xy", "xz", "yz"};
 constexpr std::size_t places[] = {0, 4, 8, 1, 2, 5};  // of these in a tensor
 
-const std::vector<double>& size_of(const OptionValues& options) {
-  return std::get<std::vector<double>>(options.at("size"));
-}
-
-double mean_diameter(const Particles& particles) {
-  return 2 * std::accumulate(particles.radius.begin(), particles.radius.end(), 0.0) /
-         static_cast<double>(particles.size());
-}
-
 /// Σφ ∇u and Σφ over the voxels of a box.
 struct GridMean {
   Tensor sum{};
@@ -60,7 +51,7 @@ struct Agreement {
 class BoxStrainRate : public Measurement {
  public:
   explicit BoxStrainRate(const MeasurementSetting& setting)
-      : size_(size_of(setting.options)),
+      : size_(numbers_option(setting.options, "size")),
         fewest_(count_option(setting.options, "particles_min")),
         condition_max_(number_option(setting.options, "condition_max")),
         lattice_(setting.lattice),
@@ -122,7 +113,7 @@ class BoxStrainRate : public Measurement {
 
   Vec3 edges(const Particles& particles) const {
     if (!size_.empty()) return {size_[0], size_[1], size_[2]};
-    const double d = mean_diameter(particles);
+    const double d = mean_diameter(particles.radius);
     return {2.5 * d, 8 * d, 2.5 * d};
   }
 
@@ -222,13 +213,13 @@ MeasurementInfo box_strain_rate_measurement() {
                "another, in units of the box",
        .minimum = 1}};
   m.conflict = [](const OptionValues& options) -> std::optional<OptionConflict> {
-    const std::size_t n = size_of(options).size();
+    const std::size_t n = numbers_option(options, "size").size();
     if (n == 0 || n == 3) return std::nullopt;
     return OptionConflict{"size", std::to_string(n) + " numbers", "three, along x, y and z, or none"};
   };
   m.needs = [](const OptionValues& options) {
     ColumnSet columns = Column::velocity;
-    if (size_of(options).empty()) columns |= Column::radius;
+    if (numbers_option(options, "size").empty()) columns |= Column::radius;
     return MeasurementNeeds{columns, {"phi", "velocity_gradient"}};
   };
   m.make = [](const MeasurementSetting& setting) { return std::make_unique<BoxStrainRate>(setting); };

@@ -18,8 +18,7 @@ namespace {
 class DensityDrop : public Measurement {
  public:
   explicit DensityDrop(const OptionValues& options)
-      : loosening_(smooth_box(options), static_cast<std::size_t>(std::get<std::string>(options.at("up"))[0] - 'x'),
-                   reference_of(options)),
+      : loosening_(smooth_box(options), static_cast<std::size_t>(axis_option(options, "up")), reference_of(options)),
         flow_from_(std::get<std::int64_t>(options.at("flow_from"))) {
     if (const double phi = number_option(options, "phi_at_rest"); phi > 0) loosening_.rest(phi);
   }
@@ -73,11 +72,7 @@ MeasurementInfo density_drop_measurement() {
   info.name = "density_drop";
   info.description = "packing fraction in flow below that at rest, and the velocity of what loosens the material";
   info.equation = "c = <phi v>/(phi_rest - phi)";
-  info.options = CountedRegion::options(
-      {{.name = "up", .default_value = std::string("z"), .help = "axis against gravity", .choices = {"x", "y", "z"}},
-       reference_option(),
-       flow_from_option(),
-       phi_at_rest_option()});
+  info.options = CountedRegion::options({up_option(), reference_option(), flow_from_option(), phi_at_rest_option()});
   info.conflict = whole_box_conflict;
   info.needs = [](const OptionValues&) { return MeasurementNeeds{Column::radius | Column::velocity, {}}; };
   info.make = [](const MeasurementSetting& setting) { return std::make_unique<DensityDrop>(setting.options); };

@@ -106,7 +106,7 @@ MeanMotion mean_motion(const OptionValues& options, double diameter) {
   if (about == "none") motion.kind = MeanMotion::Kind::none;
   if (about == "linear") motion.kind = MeanMotion::Kind::linear;
   if (about == "layers") motion.kind = MeanMotion::Kind::layers;
-  motion.axis = static_cast<std::size_t>(std::get<std::string>(options.at("axis"))[0] - 'x');
+  motion.axis = static_cast<std::size_t>(axis_option(options, "axis"));
   motion.thickness = length_option(options, "layer", 1, diameter);
   return motion;
 }

@@ -21,10 +21,6 @@ constexpr Dimension discharge_dimension{0, 2, -1};
 constexpr Dimension area{0, 2, 0};
 constexpr std::size_t fewest_times = 3;  ///< whose scatter says something
 
-int axis(const OptionValues& options, const char* name) {
-  return std::get<std::string>(options.at(name))[0] - 'x';
-}
-
 Origin origin_of(const OptionValues& options) {
   return std::get<std::string>(options.at("origin")) == "slot" ? Origin::slot : Origin::fitted;
 }
@@ -34,8 +30,8 @@ class KinematicMeasurement : public Measurement {
  public:
   explicit KinematicMeasurement(const MeasurementSetting& setting)
       : lattice_(setting.lattice),
-        up_(axis(setting.options, "up")),
-        across_(axis(setting.options, "across")),
+        up_(axis_option(setting.options, "up")),
+        across_(axis_option(setting.options, "across")),
         slot_(number_option(setting.options, "slot")),
         bottom_(number_option(setting.options, "bottom")),
         lowest_(number_option(setting.options, "lowest") > 0 ? number_option(setting.options, "lowest")
@@ -64,8 +60,9 @@ class KinematicMeasurement : public Measurement {
   }
 
   std::vector<Table> tables() override {
-    std::vector<Table> tables = tables_of(mean_flow());
-    widen_errors(tables);
+    const Columns all = sum_over_times();
+    std::vector<Table> tables = tables_of(mean_flow(all, columns_.size()));
+    widen_errors(all, tables);
     return tables;
   }
 
@@ -80,19 +77,26 @@ class KinematicMeasurement : public Measurement {
       phi += other.phi;
       voxels += other.voxels;
     }
+    void take_off(const Column& other) {
+      flux -= other.flux;
+      phi -= other.phi;
+      voxels -= other.voxels;
+    }
   };
+  using Columns = std::map<Place, Column>;
+
+  Columns sum_over_times() const {
+    Columns sums;
+    for (const Columns& one : columns_)
+      for (const auto& [at, column] : one) sums[at].add(column);
+    return sums;
+  }
 
   // Output times tell the same place again, so that a point is no more independent for their number.
-  std::vector<DrainagePoint> mean_flow(std::optional<std::size_t> without = {}) const {
-    std::map<Place, Column> sums;
-    std::size_t outputs = 0;
-    for (std::size_t k = 0; k < columns_.size(); ++k) {
-      if (k == without) continue;
-      ++outputs;
-      for (const auto& [at, column] : columns_[k]) sums[at].add(column);
-    }
+  std::vector<DrainagePoint> mean_flow(const Columns& sums, std::size_t outputs) const {
     std::vector<DrainagePoint> points;
     for (const auto& [at, column] : sums) {
+      if (column.voxels == 0) continue;
       const double deep = static_cast<double>(column.voxels) / static_cast<double>(outputs);
       points.push_back({lattice_.centre(across_, at.second) - slot_, lattice_.centre(up_, at.first) - bottom_,
                         column.flux / column.phi, std::min(1.0, independence_ * std::max(1.0, deep))});
@@ -106,13 +110,15 @@ class KinematicMeasurement : public Measurement {
 
   // Voxels tell nothing of what all of them do for a time. What varies between output times does: the jackknife over
   // them takes the place of an error that is smaller.
-  void widen_errors(std::vector<Table>& tables) const {
+  void widen_errors(const Columns& all, std::vector<Table>& tables) const {
     const std::size_t times = columns_.size();
     if (times < fewest_times) return;
     std::vector<std::vector<double>> without;  // [number of any table][time]
-    for (std::size_t k = 0; k < times; ++k) {
+    for (const Columns& one : columns_) {
+      Columns others = all;
+      for (const auto& [at, column] : one) others[at].take_off(column);
       std::size_t n = 0;
-      for (const Table& table : tables_of(mean_flow(k)))
+      for (const Table& table : tables_of(mean_flow(others, times - 1)))
         for (const Quantity& q : table.numbers) {
           if (n == without.size()) without.emplace_back();
           without[n++].push_back(q.value);
@@ -188,7 +194,7 @@ class KinematicMeasurement : public Measurement {
   int up_, across_;
   double slot_, bottom_, lowest_, highest_, half_width_, least_phi_, independence_;
   Origin origin_;
-  std::vector<std::map<Place, Column>> columns_;  ///< of each output time
+  std::vector<Columns> columns_;  ///< of each output time
 };
 
 OptionInfo length_option_info(const char* name, const char* help) {
@@ -203,7 +209,7 @@ MeasurementInfo kinematic_fit_measurement() {
   m.description = "kinematic model of drainage through a slot: b and Q of the flow, and profile width against height";
   m.equation = "v = Q exp(-x^2/(4 b z))/sqrt(4 pi b z); s^2 = 2 b z + offset; b of dv/dz = b d2v/dx2";
   m.options = {
-      {.name = "up", .default_value = std::string("z"), .help = "axis against gravity", .choices = {"x", "y", "z"}},
+      up_option(),
       {.name = "across",
        .default_value = std::string("x"),
        .help = "axis across the slot; the flow is averaged over the third",
@@ -221,7 +227,7 @@ MeasurementInfo kinematic_fit_measurement() {
        .choices = {"slot", "fitted"}},
       least_phi_option()};
   m.conflict = [](const OptionValues& options) -> std::optional<OptionConflict> {
-    if (axis(options, "up") != axis(options, "across")) return std::nullopt;
+    if (axis_option(options, "up") != axis_option(options, "across")) return std::nullopt;
     return OptionConflict{"across", std::get<std::string>(options.at("across")), "another axis than up"};
   };
   m.needs = [](const OptionValues&) { return MeasurementNeeds{{}, {"phi", "velocity"}}; };

@@ -28,16 +28,6 @@ double mean_volume(const std::vector<double>& radius) {
   return sum / static_cast<double>(radius.size());
 }
 
-double mean_of(const std::vector<double>& values, const std::function<bool(std::size_t)>& keeps) {
-  double sum = 0, n = 0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (!keeps(k)) continue;
-    sum += values[k];
-    ++n;
-  }
-  return sum / n;
-}
-
 /// Of a series about a straight line: a silo that drains loosens slowly, too. NaN for fewer than four values.
 double scatter(const std::vector<double>& series) {
   if (series.size() < 4) return nan;

@@ -1,7 +1,6 @@
 #pragma once
 /// How much looser material is when it flows, and how fast what loosens it rises.
 #include <cstddef>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -73,7 +72,6 @@ class Loosening {
   Result result() const;
 
  private:
-  using Keeps = std::function<bool(std::size_t)>;
   void learn_sizes(const Frame& frame);
   Result against_rest() const;
   Result between_layers() const;

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "measure/option_values.hpp"
 #include "measure/plane_counts.hpp"
 #include "measure/spots.hpp"
 
@@ -13,8 +14,7 @@ namespace {
 class Outflow : public Measurement {
  public:
   explicit Outflow(const OptionValues& options)
-      : counts_(static_cast<std::size_t>(std::get<std::string>(options.at("up"))[0] - 'x'),
-                std::get<std::vector<double>>(options.at("heights"))) {}
+      : counts_(static_cast<std::size_t>(axis_option(options, "up")), numbers_option(options, "heights")) {}
 
   void add(const Frame& frame) override { counts_.add(frame); }
 
@@ -67,10 +67,10 @@ MeasurementInfo outflow_measurement() {
   info.description = "grains per time that pass down through planes, such as an orifice";
   info.equation = "Q = -d/dt N(above the plane)";
   info.options = {
-      {.name = "up", .default_value = std::string("z"), .help = "axis against gravity", .choices = {"x", "y", "z"}},
+      up_option(),
       {.name = "heights", .default_value = std::vector<double>{0.0}, .help = "where the planes are, up [length]"}};
   info.conflict = [](const OptionValues& options) -> std::optional<OptionConflict> {
-    if (!std::get<std::vector<double>>(options.at("heights")).empty()) return std::nullopt;
+    if (!numbers_option(options, "heights").empty()) return std::nullopt;
     return OptionConflict{"heights", "none", "at least one height"};
   };
   info.needs = [](const OptionValues&) { return MeasurementNeeds{ColumnSet(), {}}; };

@@ -1,6 +1,5 @@
 #include "measure/plane_counts.hpp"
 
-#include <functional>
 #include <numeric>
 
 #include "measure/time_groups.hpp"
@@ -18,7 +17,7 @@ void PlaneCounts::add(const Frame& frame) {
 
 Estimate PlaneCounts::rate_of(const std::vector<double>& grains) const {
   if (times_.size() < 2) return {};
-  return by_time_groups(times_.size(), [&](const std::function<bool(std::size_t)>& keeps) {
+  return by_time_groups(times_.size(), [&](const Keeps& keeps) {
     std::vector<double> t, n;
     for (std::size_t k = 0; k < times_.size(); ++k) {
       if (!keeps(k)) continue;

@@ -17,7 +17,7 @@ constexpr std::size_t profile_quantities = 7;  // phi, density, velocity (three)
 class PlaneProfile : public Measurement {
  public:
   explicit PlaneProfile(const MeasurementSetting& setting)
-      : axis_(std::get<std::string>(setting.options.at("axis"))[0] - 'x'),
+      : axis_(axis_option(setting.options, "axis")),
         from_(number_option(setting.options, "from")),
         to_(number_option(setting.options, "to")),
         area_(number_option(setting.options, "area")),

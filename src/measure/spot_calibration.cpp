@@ -29,10 +29,6 @@ namespace {
 constexpr double default_rise = 0.1;    // mean diameters, as published
 constexpr std::size_t plane_count = 5;  // at which the flow is counted
 
-std::vector<double> numbers_option(const OptionValues& options, const char* name) {
-  return std::get<std::vector<double>>(options.at(name));
-}
-
 // Against a frame at rest, the whole width of the silo counts: what flows down within the box came from places where
 // the spots were fewer when they first came by, and has lost less than the spots around it say. Between two planes
 // right across, what is missing is what flowed out below before the flow began above.
@@ -164,9 +160,10 @@ class SpotCalibration : public Measurement {
     std::vector<Table> all = diffusion_->tables();
     for (auto* part : {correlation_.get(), widths_.get()})
       for (Table& table : part->tables()) all.push_back(std::move(table));
-    const SpotObservations observed = observations(all);
-    Table table = parameter_table(observed, number_of(all, "velocity_correlation", "amplitude"),
-                                  number_of(all, "kinematic_width", "offset"));
+    const Loosening::Result loosened = loosening_.result();
+    Table table =
+        parameter_table(observations(all, loosened), loosened, number_of(all, "velocity_correlation", "amplitude"),
+                        number_of(all, "kinematic_width", "offset"));
     for (Table& part : all) part.name = "spot_calibration_" + part.name;
     all.insert(all.begin(), std::move(table));
     return all;
@@ -195,14 +192,14 @@ class SpotCalibration : public Measurement {
     frames_in_window_ = 0;
   }
 
-  SpotObservations observations(const std::vector<Table>& tables) const {
+  SpotObservations observations(const std::vector<Table>& tables, const Loosening::Result& loosened) const {
     SpotObservations o;
     o.radius = widened(number_of(tables, "velocity_correlation", "correlation_radius"), error_of_mean(radii_));
     o.b = number_of(tables, "kinematic_width", "b");
     o.grain_diffusion = widened(number_of(tables, "diffusion", "diffusion_length_y"), error_of_mean(diffusions_));
     if (loosening_.frames() > 0) o.number_density = mean_by_time_groups(region_.density());
-    o.speed = loosening_.result().speed;
-    o.speed.error = std::hypot(o.speed.error, o.speed.value * relative_drop());
+    o.speed = loosened.speed;
+    o.speed.error = std::hypot(o.speed.error, o.speed.value * relative_drop(loosened));
     o.outflow = counts_.mean_rate();
     for (const Table& t : tables)
       if (t.name == "diffusion")
@@ -214,13 +211,13 @@ class SpotCalibration : public Measurement {
 
   // A spot carries more where grains are denser, and those that come from above are denser or looser than the spots
   // around them make them. What is missing therefore tells the speed to the part of the grains that is missing.
-  double relative_drop() const {
-    const Loosening::Result loosened = loosening_.result();
+  double relative_drop(const Loosening::Result& loosened) const {
     if (region_at_rest_.density().empty()) return loosened.drop.value / loosened.at_rest.value;
     return 1 - mean_by_time_groups(region_.density()).value / region_at_rest_.density().front();
   }
 
-  Table parameter_table(const SpotObservations& o, const Estimate& amplitude, const Estimate& offset) const {
+  Table parameter_table(const SpotObservations& o, const Loosening::Result& loosened, const Estimate& amplitude,
+                        const Estimate& offset) const {
     const SpotParameterEstimates p = spot_parameters(o);
     Table t{"spot_calibration", "parameters of the spot model that makes this flow",
             "C(r) = 1 - 3r/4R + r^3/16R^3; s^2 = 2 b z + offset; w = s b/b_p; Q = lambda N/w; c = <phi v>/drop"};
@@ -243,7 +240,6 @@ class SpotCalibration : public Measurement {
     add("share", p.share, dimension::none, "s, in the slope of the variance over the lags");
     add("influence", p.influence, dimension::none, "w: grains move by 1/w of a spot's step");
     add("phi", times(volume, o.number_density), dimension::none, "packing fraction in flow");
-    const Loosening::Result loosened = loosening_.result();
     add("drop", times(1 / loosened.at_rest.value, loosened.drop), dimension::none,
         "grains that are missing in flow, as a share of those at rest");
     add("grains", p.grains, dimension::none, "N, in a spot");
@@ -252,7 +248,7 @@ class SpotCalibration : public Measurement {
     add("insertion_rate", p.insertion_rate, dimension::rate, "lambda = Q w/N, spots per time");
     add("speed", o.speed, dimension::velocity, "of spots upward, from the density drop");
     add("hop_rate", p.hop_rate, dimension::rate, "mu_s = speed/step_up, steps of a spot per time");
-    add_remarks(t);
+    add_remarks(loosened, t);
     return t;
   }
 
@@ -264,9 +260,9 @@ class SpotCalibration : public Measurement {
       t.columns[1].values.push_back(known ? share->after(p.hop_rate.value * time) : nan);
   }
 
-  void add_remarks(Table& t) const {
+  void add_remarks(const Loosening::Result& loosened, Table& t) const {
     if (loosening_.frames() == 0) t.remarks.emplace_back("No frame after the packing at rest belongs to the flow.");
-    if (loosening_.result().drop.value <= 0)
+    if (loosened.drop.value <= 0)
       t.remarks.emplace_back(
           "The flow is no looser than what it is compared with, so that spots have no speed: give phi_at_rest, or "
           "reference: layers.");
@@ -352,7 +348,7 @@ MeasurementInfo spot_calibration_measurement() {
   info.equation = "w = s b/b_p; N = n 4/3 pi R^3; Q = lambda N/w; c = <phi v>/(phi_rest - phi)";
   info.options = calibration_options();
   info.conflict = [](const OptionValues& options) -> std::optional<OptionConflict> {
-    const std::vector<double> walls = numbers_option(options, "side_walls");
+    const std::vector<double>& walls = numbers_option(options, "side_walls");
     if (!walls.empty() && !(walls.size() == 2 && walls[0] < walls[1]))
       return OptionConflict{"side_walls", std::to_string(walls.size()) + " numbers", "two numbers in order, or none"};
     if (std::get<std::vector<std::string>>(options.at("components")).empty())

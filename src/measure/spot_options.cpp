@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "measure/counted_region.hpp"
+#include "measure/option_values.hpp"
 
 namespace grainvdb {
 
@@ -32,8 +33,7 @@ OptionInfo phi_at_rest_option() {
 }
 
 SmoothBox smooth_box(const OptionValues& options) {
-  const auto& lo = std::get<std::vector<double>>(options.at("lo"));
-  const auto& hi = std::get<std::vector<double>>(options.at("hi"));
+  const std::vector<double>&lo = numbers_option(options, "lo"), &hi = numbers_option(options, "hi");
   return {{lo[0], lo[1], lo[2]}, {hi[0], hi[1], hi[2]}};
 }
 
@@ -44,7 +44,7 @@ Loosening::Reference reference_of(const OptionValues& options) {
 
 std::optional<OptionConflict> whole_box_conflict(const OptionValues& options) {
   for (const std::string name : {"lo", "hi"})
-    if (std::get<std::vector<double>>(options.at(name)).empty())
+    if (numbers_option(options, name).empty())
       return OptionConflict{name, "none", "three numbers: a box within the material"};
   return CountedRegion::conflict(options);
 }

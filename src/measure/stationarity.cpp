@@ -12,15 +12,11 @@
 namespace grainvdb {
 namespace {
 
-int axis_of(const OptionValues& options, const char* name) {
-  return std::get<std::string>(options.at(name))[0] - 'x';
-}
-
 class StationarityMeasurement : public Measurement {
  public:
   explicit StationarityMeasurement(const MeasurementSetting& setting)
-      : axis_(axis_of(setting.options, "axis")),
-        flow_(axis_of(setting.options, "flow")),
+      : axis_(axis_option(setting.options, "axis")),
+        flow_(axis_option(setting.options, "flow")),
         gravity_(number_option(setting.options, "gravity")),
         profile_(spec_of(setting.options), setting.lattice, {"stress", "density"}) {}
 
@@ -43,7 +39,7 @@ class StationarityMeasurement : public Measurement {
  private:
   static BinSpec spec_of(const OptionValues& options) {
     BinSpec spec;
-    spec.axis = axis_of(options, "axis");
+    spec.axis = axis_option(options, "axis");
     spec.from = number_option(options, "from");
     spec.to = number_option(options, "to");
     return spec;
@@ -169,7 +165,7 @@ MeasurementInfo stationarity() {
       {.name = "to", .default_value = 0.0, .help = "voxel centres from here on are left out [length]"},
       {.name = "gravity", .default_value = 0.0, .help = "acceleration against the axis, 0 for none [length/time^2]"}};
   info.conflict = [](const OptionValues& options) -> std::optional<OptionConflict> {
-    if (axis_of(options, "axis") == axis_of(options, "flow"))
+    if (axis_option(options, "axis") == axis_option(options, "flow"))
       return OptionConflict{"flow", std::get<std::string>(options.at("flow")), "another direction than the axis"};
     return height_conflict(options);
   };

@@ -13,14 +13,10 @@
 namespace grainvdb {
 namespace {
 
-const std::vector<double>& place(const OptionValues& options, const char* name) {
-  return std::get<std::vector<double>>(options.at(name));
-}
-
 /// `lines` places from `from` to `to`, ends included.
 std::vector<Vec3> starts_of(const OptionValues& options) {
-  const std::vector<double>& from = place(options, "from");
-  const std::vector<double>& to = place(options, "to");
+  const std::vector<double>& from = numbers_option(options, "from");
+  const std::vector<double>& to = numbers_option(options, "to");
   std::vector<Vec3> starts;
   if (from.empty()) return starts;
   const auto lines = std::get<std::int64_t>(options.at("lines"));
@@ -124,8 +120,8 @@ class StochasticFlowRule : public Measurement {
 };
 
 std::optional<OptionConflict> conflict_of(const OptionValues& options) {
-  const std::size_t from = place(options, "from").size();
-  const std::size_t to = place(options, "to").size();
+  const std::size_t from = numbers_option(options, "from").size();
+  const std::size_t to = numbers_option(options, "to").size();
   if (from != 0 && from != 3) return OptionConflict{"from", std::to_string(from) + " numbers", "three, or none"};
   if (to != from) return OptionConflict{"to", std::to_string(to) + " numbers", "as many as from has"};
   return std::nullopt;

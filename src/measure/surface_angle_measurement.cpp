@@ -22,9 +22,7 @@ constexpr double degrees = 180 / std::numbers::pi;
 class SurfaceAngle : public Measurement {
  public:
   explicit SurfaceAngle(const OptionValues& options)
-      : options_(options),
-        region_(options),
-        vertical_(static_cast<std::size_t>(std::get<std::string>(options.at("up"))[0] - 'x')) {}
+      : options_(options), region_(options), vertical_(static_cast<std::size_t>(axis_option(options, "up"))) {}
 
   void add(const Frame& frame) override {
     const Particles& grains = frame.particles;

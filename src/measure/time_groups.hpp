@@ -22,10 +22,12 @@ class TimeGroups {
   std::size_t samples_, groups_;
 };
 
+/// Whether a sample is kept.
+using Keeps = std::function<bool(std::size_t)>;
+
 /// f(keeps) of all samples, keeps(k) for each of them, and its error by the jackknife over groups; NaN for fewer than
 /// two groups.
-inline Estimate by_time_groups(std::size_t samples,
-                               const std::function<double(const std::function<bool(std::size_t)>&)>& f) {
+inline Estimate by_time_groups(std::size_t samples, const std::function<double(const Keeps&)>& f) {
   const TimeGroups groups(samples);
   std::vector<double> without;
   for (std::size_t g = 0; g < groups.count(); ++g)
@@ -33,17 +35,19 @@ inline Estimate by_time_groups(std::size_t samples,
   return {f([](std::size_t) { return true; }), jackknife_error(without)};
 }
 
-/// The same of the mean.
+/// NaN where none is kept.
+inline double mean_of(const std::vector<double>& values, const Keeps& keeps) {
+  double sum = 0, n = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (!keeps(k)) continue;
+    sum += values[k];
+    ++n;
+  }
+  return sum / n;
+}
+
 inline Estimate mean_by_time_groups(const std::vector<double>& values) {
-  return by_time_groups(values.size(), [&](const std::function<bool(std::size_t)>& keeps) {
-    double sum = 0, n = 0;
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      if (!keeps(k)) continue;
-      sum += values[k];
-      ++n;
-    }
-    return sum / n;
-  });
+  return by_time_groups(values.size(), [&](const Keeps& keeps) { return mean_of(values, keeps); });
 }
 
 }  // namespace grainvdb

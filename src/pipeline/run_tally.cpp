@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "measure/grains.hpp"
 
 namespace grainvdb {
 namespace {
@@ -23,8 +24,7 @@ std::size_t channel_count(const Plan& plan) {
 void RunTally::add(const FrameContext& frame) {
   material_ += frame.particles().size();
   const std::vector<double>& radius = frame.particles().radius;
-  if (!(diameter_ > 0) && !radius.empty())
-    diameter_ = 2 * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size());
+  if (!(diameter_ > 0) && !radius.empty()) diameter_ = mean_diameter(radius);
   size_.particles = std::max(size_.particles, static_cast<double>(frame.particles().size()));
   size_.contacts = std::max(size_.contacts, static_cast<double>(frame.contact_count()));
 }
