@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <sstream>
 
+#include "base/listed.hpp"
 #include "pipeline/number.hpp"
+#include "pipeline/text.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -27,21 +29,9 @@ constexpr FieldNote notes[] = {
     {"gd_over_dv", "g d/δv"},
 };
 
-// In double quotes, as YAML reads any text.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') result += '\\';
-    result += c;
-  }
-  return result + '"';
-}
-
 std::string list(const std::vector<std::string>& texts) {
-  if (texts.size() == 1) return quoted(texts.front());
-  std::string result;
-  for (const std::string& text : texts) result += (result.empty() ? "[" : ", ") + quoted(text);
-  return result + ']';
+  if (texts.size() == 1) return yaml_text(texts.front());
+  return '[' + listed(texts, &yaml_text) + ']';
 }
 
 std::string types_text(const std::vector<int>& types) {

@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/listed.hpp"
 #include "grainvdb/error.hpp"
 #include "pipeline/text.hpp"
 
@@ -72,9 +73,7 @@ std::string options_in_short(const Json& options) {
 }
 
 std::string joined(const Json& names, const char* none) {
-  std::string text;
-  for (const Json& name : names) text += (text.empty() ? "" : ", ") + name.get<std::string>();
-  return text.empty() ? none : text;
+  return names.empty() ? none : listed(names, [](const Json& name) { return name.get<std::string>(); });
 }
 
 std::string cell(std::string text) {

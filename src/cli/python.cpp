@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/listed.hpp"
 #include "grainvdb/error.hpp"
 
 namespace grainvdb::cli {
@@ -42,8 +43,7 @@ bool succeeds(const std::string& python, const std::string& code) {
 }
 
 std::string find_python(const std::vector<std::string>& needs) {
-  std::string modules;
-  for (const std::string& name : needs) modules += (modules.empty() ? "" : ", ") + name;
+  const std::string modules = listed(needs);
   std::vector<std::string> candidates{"python3", "/usr/bin/python3"};
   if (const char* chosen = std::getenv("GRAINVDB_PYTHON"); chosen != nullptr && *chosen != '\0') candidates = {chosen};
   for (const std::string& python : candidates)

@@ -3,6 +3,7 @@
 #include <set>
 #include <string>
 
+#include "base/listed.hpp"
 #include "grainvdb/measurement.hpp"
 #include "grainvdb/memory_model.hpp"
 #include "grainvdb/plan.hpp"
@@ -28,9 +29,7 @@ std::vector<std::string> columns_there(const Pipeline& pipeline) {
 }
 
 std::string joined(const std::vector<std::string>& names, const char* none) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text.empty() ? none : text;
+  return names.empty() ? none : listed(names);
 }
 
 std::string counted(std::size_t n, const std::string& noun) {

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/listed.hpp"
 #include "pipeline/number.hpp"
 
 namespace grainvdb {
@@ -37,16 +38,14 @@ std::string print(const Vec3& place) {
 }
 template <class T>
 std::string print(const std::vector<T>& items) {
-  std::string result;
-  for (const T& item : items) result += (result.empty() ? "" : ", ") + print(item);
-  return '[' + result + ']';
+  return '[' + listed(items, [](const T& item) { return print(item); }) + ']';
 }
 
 std::string print_entry(const ConfigItem& item) {
-  std::string keys;
-  for (const auto& [name, value] : item.values)
-    keys += (keys.empty() ? "" : ", ") + name + ": " + std::visit([](const auto& v) { return print(v); }, value);
-  return print(item.kind) + ": {" + keys + '}';
+  const auto print_key = [](const auto& key) {
+    return key.first + ": " + std::visit([](const auto& v) { return print(v); }, key.second);
+  };
+  return print(item.kind) + ": {" + listed(item.values, print_key) + '}';
 }
 
 std::string print(const ConfigItem& item) {
@@ -54,10 +53,7 @@ std::string print(const ConfigItem& item) {
 }
 
 std::string print_named(const ConfigValue& value) {
-  std::string entries;
-  for (const ConfigItem& item : std::get<std::vector<ConfigItem>>(value))
-    entries += (entries.empty() ? "" : ", ") + print_entry(item);
-  return '{' + entries + '}';
+  return '{' + listed(std::get<std::vector<ConfigItem>>(value), &print_entry) + '}';
 }
 
 std::string print_value(const KeyInfo& key, const ConfigValue& value) {

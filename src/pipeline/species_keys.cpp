@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/listed.hpp"
 #include "pipeline/convert.hpp"
 #include "pipeline/number.hpp"
 #include "pipeline/species_stages.hpp"
@@ -75,9 +76,7 @@ std::string common(const Species& a, const Species& b) {
     if (from >= std::min(a.diameter->second, b.diameter->second)) return {};
     all.push_back("diameter " + print_number(from));
   }
-  std::string text;
-  for (const std::string& part : all) text += (text.empty() ? "" : ", ") + part;
-  return text;
+  return listed(all);
 }
 
 [[noreturn]] void refuse_empty(const Pipeline& p, const Species& s, const std::string& found,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/listed.hpp"
 #include "grainvdb/measurement.hpp"
 
 namespace grainvdb {
@@ -20,12 +21,6 @@ std::map<std::string, bool> made_of_forces(const Pipeline& pipeline, const Plan&
     for (const std::string& need : stage->needs(pipeline.stages).fields) of_forces = of_forces || found[need];
   }
   return found;
-}
-
-std::string named(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 [[noreturn]] void refuse(const Location& where, const std::string& what, const FrameSource& source,
@@ -54,7 +49,7 @@ void refuse_forces_of_spots(const Pipeline& pipeline, const Plan& plan, const Fr
     refuse(
         pipeline.location(key),
         "there are no forces in a spot run, and so neither stress nor what is made of it: " + key + " wants " +
-            named(refused) +
+            listed(refused) +
             ". The spot model moves grains by geometry alone; the velocities in its dumps are displacements over the "
             "time between two",
         source, "Leave these out; phi, velocity and shear_rate are there, and all of the packing");

@@ -52,6 +52,15 @@ std::string quote_text(std::string_view text) {
   return result + "'";
 }
 
+std::string yaml_text(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') result += '\\';
+    result += c;
+  }
+  return result + '"';
+}
+
 std::string join_choices(const std::vector<std::string>& choices) {
   std::string result;
   for (std::size_t i = 0; i < choices.size(); ++i) {

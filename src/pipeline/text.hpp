@@ -9,6 +9,9 @@ namespace grainvdb {
 /// The text in single quotes, cut to a readable length, control characters escaped.
 std::string quote_text(std::string_view text);
 
+/// The text in double quotes, as YAML reads any text.
+std::string yaml_text(const std::string& text);
+
 /// "a, b or c", each in plain text.
 std::string join_choices(const std::vector<std::string>& choices);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "base/listed.hpp"
 #include "grainvdb/error.hpp"
 
 namespace grainvdb {
@@ -32,13 +33,6 @@ constexpr std::array compute_items{ComputeItem{"pos", 6},
                                    ComputeItem{"contactPoint", 3},
                                    ComputeItem{"ms_id", 2},
                                    ComputeItem{"verbose", 0}};
-
-template <class List, class Name>
-std::string listed_names(const List& list, Name name) {
-  std::string text;
-  for (const auto& item : list) text += (text.empty() ? "" : ", ") + std::string(name(item));
-  return text;
-}
 
 /// A column named c_NAME[n].
 struct Indexed {
@@ -84,7 +78,7 @@ void check_keywords(const InputSpec& spec, const ContactSection& section, const 
       throw ConfigError({at,
                          "unknown keyword of compute " + section.compute,
                          "'" + keyword + "'",
-                         listed_names(compute_items, [](const ComputeItem& i) { return i.keyword; }),
+                         listed(compute_items, &ComputeItem::keyword),
                          {}});
   }
 }
@@ -113,7 +107,7 @@ void check_contact_columns(const InputSpec& spec, const ContactSection& section,
       throw ConfigError({at,
                          "unknown quantity of " + section.path + ".columns",
                          "'" + key + "'",
-                         listed_names(known, [](const auto& k) { return k.first; }),
+                         listed(known, [](const auto& k) { return k.first; }),
                          {}});
     if (names.size() != it->second)
       throw ConfigError({at,
@@ -127,9 +121,8 @@ void check_contact_columns(const InputSpec& spec, const ContactSection& section,
   if (!std::all_of(needed.begin(), needed.end(), given) ||
       given("force") == (given("normal_force") || given("tangential_force")) || (!given("force") && !parts))
     throw ConfigError({at, section.path + ".columns is incomplete or gives the force twice",
-                       listed_names(columns, [](const auto& c) { return c.first; }),
-                       listed_names(needed, [](const std::string& k) { return k; }) +
-                           " and either force or both normal_force and tangential_force",
+                       listed(columns, [](const auto& c) { return c.first; }),
+                       listed(needed) + " and either force or both normal_force and tangential_force",
                        "Grains without friction have a normal force only: name it force"});
 }
 
@@ -147,8 +140,7 @@ ComputeColumns::ComputeColumns(const ColumnFinder& finder, const ContactSection&
     throw InputError({finder.location(),
                       "the keywords of " + section.path + ".compute do not account for all columns of the compute",
                       compute.prefix + '[' + std::to_string(compute.index) + ']',
-                      "at most " + compute.prefix + '[' + std::to_string(width) + "] for " +
-                          listed_names(keywords, [](const std::string& k) { return k; }),
+                      "at most " + compute.prefix + '[' + std::to_string(width) + "] for " + listed(keywords),
                       wide_history
                           ? "The contact history seems to be wider than 3, so the contact point cannot be found: use " +
                                 section.path + ".columns"

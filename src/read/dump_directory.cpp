@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/listed.hpp"
 #include "read/columns.hpp"
 #include "read/contact_table.hpp"
 #include "read/particle_table.hpp"
@@ -21,9 +22,7 @@ UnitSystem unnamed_units() {
 }
 
 std::string known_units() {
-  std::string text;
-  for (const UnitSystem& system : unit_systems()) text += (text.empty() ? "" : ", ") + system.name;
-  return text;
+  return listed(unit_systems(), &UnitSystem::name);
 }
 
 const UnitSystem& unit_system_in_dump(const Stated& stated) {
@@ -78,10 +77,8 @@ bool same_time(double a, double b) {
   return std::abs(a - b) <= printed * std::max(std::abs(a), std::abs(b));
 }
 
-std::string listed(const std::vector<std::string>& patterns) {
-  std::string all;
-  for (const std::string& pattern : patterns) all += (all.empty() ? "'" : ", '") + pattern + "'";
-  return all;
+std::string in_quotes(const std::vector<std::string>& patterns) {
+  return listed(patterns, [](const std::string& pattern) { return "'" + pattern + "'"; });
 }
 
 }  // namespace
@@ -114,7 +111,7 @@ DumpDirectory::DumpDirectory(const InputSpec& spec, InputFiles files)
   if (particles_.frames().empty())
     throw InputError(
         {stated_at(spec, "input.particles"),
-         spec.particles.empty() ? "no particle dumps are given" : "no particle dump in " + listed(spec.particles),
+         spec.particles.empty() ? "no particle dumps are given" : "no particle dump in " + in_quotes(spec.particles),
          particles_.unreadable().empty() ? std::string() : particles_.unreadable().front().reason,
          "paths, directories or globs of particle dumps",
          {}});
@@ -205,7 +202,7 @@ std::size_t DumpDirectory::find_beside(std::size_t frame, const Beside& dumps) {
     throw InputError({where, "no " + dumps.noun + " dump has timestep " + std::to_string(step),
                       std::to_string(series.frames().size()) + " other timesteps in the " +
                           std::to_string(series.files().size()) + ' ' + dumps.noun + " files of " +
-                          listed(dumps.patterns),
+                          in_quotes(dumps.patterns),
                       "one " + dumps.noun + " frame for every particle frame that is used",
                       "Choose the frames that have " + dumps.noun + "s, or fields that need none"});
   const FrameRecord& found = series.frames()[*k];

@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/listed.hpp"
 #include "pipeline/number.hpp"
+#include "pipeline/text.hpp"
 
 namespace grainvdb::spot {
 namespace {
@@ -85,30 +87,17 @@ Box container_of(const Pipeline& pipeline, const Frame& frame, const Extent& gra
   return box;
 }
 
-std::string list(const std::vector<std::string>& items) {
-  std::string text;
-  for (const std::string& item : items) text += (text.empty() ? "" : ", ") + item;
-  return '[' + text + ']';
-}
-
 std::string list(const Vec3& x) {
-  return list({print_number(x[0]), print_number(x[1]), print_number(x[2])});
-}
-
-// A quoted text of YAML.
-std::string quoted(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) result += (c == '"' || c == '\\' ? std::string("\\") : std::string()) + c;
-  return result + '"';
+  return '[' + listed(x, &print_number) + ']';
 }
 
 std::string packing_text(const Pipeline& pipeline, std::size_t frame) {
   std::vector<std::string> files, types;
   for (const std::string& file : pipeline.input.particles)
-    files.push_back(quoted(std::filesystem::absolute(file).lexically_normal().string()));
+    files.push_back(yaml_text(std::filesystem::absolute(file).lexically_normal().string()));
   for (const int type : pipeline.select.types) types.push_back(std::to_string(type));
-  std::string text = "packing:\n  dump: " + list(files) + "\n  frame: " + std::to_string(frame) + '\n';
-  if (!types.empty()) text += "  types: " + list(types) + '\n';
+  std::string text = "packing:\n  dump: [" + listed(files) + "]\n  frame: " + std::to_string(frame) + '\n';
+  if (!types.empty()) text += "  types: [" + listed(types) + "]\n";
   if (pipeline.input.radius) text += "  radius: " + print_number(*pipeline.input.radius) + '\n';
   return text;
 }
@@ -118,7 +107,7 @@ std::string container_text(const Pipeline& pipeline, const Box& box) {
   for (std::size_t a = 0; a < 3; ++a)
     if (box.periodic[a]) periodic.emplace_back(1, "xyz"[a]);
   std::string text = "\ncontainer:\n  lo: " + list(box.lo) + "\n  hi: " + list(box.hi) + '\n';
-  if (!periodic.empty()) text += "  periodic: " + list(periodic) + '\n';
+  if (!periodic.empty()) text += "  periodic: [" + listed(periodic) + "]\n";
   return text + "  orifice:\n    shape: slot\n    width: " + print_number(number(pipeline, "slot_width")) +
          "\n    centre: [" + print_number(number(pipeline, "slot")) + ", 0]\n";
 }

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "base/listed.hpp"
 #include "grainvdb/tune.hpp"
 
 namespace grainvdb {
@@ -57,9 +58,7 @@ std::vector<std::size_t> by_time(const std::vector<Trial>& trials) {
 }
 
 std::string tolerances(const std::map<std::string, double>& tolerance) {
-  std::string text;
-  for (const auto& [field, most] : tolerance) text += (text.empty() ? "" : ", ") + field + " " + number(most);
-  return text;
+  return listed(tolerance, [](const auto& of) { return of.first + ' ' + number(of.second); });
 }
 
 std::string table(const TuneReport& report, const std::map<std::string, double>& tolerance) {
