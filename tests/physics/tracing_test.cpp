@@ -1,6 +1,5 @@
 // Tracers through the fields of whole pipelines: packings that move as one, so that every path is known.
 #include <cmath>
-#include <functional>
 #include <set>
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 #include <gmock/gmock.h>
 
 #include "grainvdb/error.hpp"
+#include "physics/tracing_scene.hpp"
 #include "support/lattice_packing.hpp"
 #include "support/memory_source.hpp"
 #include "support/memory_tracers.hpp"
@@ -17,79 +17,12 @@
 namespace grainvdb::testing::tracing_test {
 namespace {
 
+using namespace testing::tracing_scene;  // NOLINT: what the tests of this scene share
+
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-constexpr int sites = 8;
-constexpr int many_sites = 32;  // 8 leaves along each axis
-/// Fields are floats whose sums are exact to 1e-5 of their terms.
-constexpr double exact = 1e-5;
-
-using Velocity = std::function<Vec3(const Vec3&, double)>;
-
-/// A packing at several times. The grains themselves stay where they are: only their velocities matter here.
-std::vector<Frame> frames_of(const Velocity& velocity, const std::vector<double>& times, bool periodic = true) {
-  std::vector<Frame> frames;
-  for (const double t : times) {
-    frames.push_back(cubic_packing(sites, periodic, [&](const Vec3& x) { return velocity(x, t); }));
-    frames.back().time = t;
-    frames.back().step = std::lround(1000 * t);
-  }
-  return frames;
-}
-
-Pipeline tracing(std::vector<Vec3> seeds, TraceSpec::Through through) {
-  Pipeline p = make_pipeline(0.5, {-0.5, -0.5, -0.5}, 2, {});
-  p.trace.emplace();
-  p.trace->seeds.points = std::move(seeds);
-  p.trace->through = through;
-  if (through == TraceSpec::Through::frames) p.window = 1;
-  return p;
-}
-Pipeline through_mean(std::vector<Vec3> seeds, double duration, double dt) {
-  Pipeline p = tracing(std::move(seeds), TraceSpec::Through::mean);
-  p.trace->duration = duration;
-  p.trace->dt = dt;
-  return p;
-}
-Pipeline through_frames(std::vector<Vec3> seeds) {
-  return tracing(std::move(seeds), TraceSpec::Through::frames);
-}
-
-void expect_near(const Vec3& found, const Vec3& expected, double tolerance) {
-  for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(found[a], expected[a], tolerance) << "xyz"[a];
-}
-
-std::vector<double> times_of(const Histories& h) {
-  std::vector<double> times;
-  for (const TracerSample& s : h.samples) times.push_back(s.time);
-  return times;
-}
-std::vector<std::int64_t> steps_of(const Histories& h) {
-  std::vector<std::int64_t> steps;
-  for (const TracerSample& s : h.samples) steps.push_back(s.step);
-  return steps;
-}
-
-/// Takes the particles away that lie where `there` says.
-void erase(Particles& p, const std::function<bool(const Vec3&)>& there) {
-  Particles kept;
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    if (there({p.position[0][i], p.position[1][i], p.position[2][i]})) continue;
-    kept.id.push_back(p.id[i]);
-    kept.radius.push_back(p.radius[i]);
-    kept.mass.push_back(p.mass[i]);
-    kept.type.push_back(p.type[i]);
-    for (std::size_t a = 0; a < 3; ++a) {
-      kept.position[a].push_back(p.position[a][i]);
-      kept.velocity[a].push_back(p.velocity[a][i]);
-      kept.angular_velocity[a].push_back(p.angular_velocity[a][i]);
-    }
-  }
-  p = kept;
-}
 
 /// Some frames cannot be read.
 class FaultySource : public MemorySource {
@@ -104,14 +37,6 @@ class FaultySource : public MemorySource {
  private:
   std::set<std::size_t> bad_;
 };
-
-const Vec3 u0{0.7, -0.4, 0.2};
-Vec3 uniform(const Vec3&, double) {
-  return u0;
-}
-Vec3 accelerating(const Vec3&, double t) {
-  return {u0[0] + 0.3 * t, u0[1], u0[2] - 0.1 * t};
-}
 
 TEST(TraceThroughTheMean, MovesWithAUniformFlowAcrossPeriodicBoundaries) {
   Pipeline p = through_mean({{0, 0, 0}, {5.25, 1.5, 7.4}}, 20, 0.5);
@@ -337,92 +262,6 @@ TEST(Trace, GivesTheSameAlongWithFieldsAndAlone) {
     EXPECT_EQ(along.fields.times[0].time.time, 0);
     EXPECT_EQ(alone.fields.times.size(), 0U);
   }
-}
-
-/// A flow that turns and crosses the boundaries of a box many leaves wide.
-std::vector<Frame> wide_frames() {
-  const double k = 2 * M_PI / many_sites;
-  std::vector<Frame> frames;
-  for (int t = 0; t < 4; ++t) {
-    frames.push_back(cubic_packing(many_sites, true, [&](const Vec3& x) {
-      return Vec3{0.6 + 0.1 * t, 0.3 * std::sin(k * x[0]), 0.2 * std::cos(k * x[1])};
-    }));
-    frames.back().time = t;
-    frames.back().step = t;
-  }
-  return frames;
-}
-
-TEST(TraceNeighbourhood, GivesTheSameBytesAsWholeGridsAndSplatsLess) {
-  using Neighbourhood = TraceSpec::Neighbourhood;
-  const auto frames = wide_frames();
-  // In a box of three leaves along each side, what is needed of a long way may lie within reach of every particle.
-  const auto both = [&](Pipeline p, double most_particles) {
-    p.trace->record = {"phi", "shear_rate"};
-    p.trace->neighbourhood = Neighbourhood::never;
-    const Histories whole = trace(p, frames);
-    p.trace->neighbourhood = Neighbourhood::always;
-    const Histories nearby = trace(p, frames);
-    EXPECT_TRUE(same_histories(whole, nearby));
-    EXPECT_LT(nearby.report.summed_leaves, whole.report.summed_leaves);
-    EXPECT_EQ(whole.report.trace->nearby_passes, 0U);
-    EXPECT_LE(nearby.report.trace->nearby_share, most_particles);
-    EXPECT_THAT(nearby.provenance_text("trace"), HasSubstr("splatted around the tracers alone, in "));
-    return nearby.report.trace->nearby_passes;
-  };
-  // 30 lengths, once around the box and further: longer than the first neighbourhood, and than the first way.
-  EXPECT_GT(both(through_mean({{3, 12, 12}}, 40, 0.25), 1), 1U);
-  EXPECT_EQ(both(through_mean({{3, 12, 12}, {4, 12, 12}}, 1, 0.25), 0.9), 1U);  // stays near
-  EXPECT_GE(both(through_frames({{3, 12, 12}}), 0.9), 2U);
-  Pipeline p = through_mean({{22, 2, 23}}, 8, 0.25);
-  p.trace->interpolation = Interpolation::tricubic;
-  p.trace->direction = TraceSpec::Direction::backward;
-  p.trace->scheme = TraceSpec::Scheme::adaptive;
-  p.trace->tolerance = 1e-4;
-  both(p, 0.9);
-}
-
-TEST(TraceNeighbourhood, IsChosenByCost) {
-  const auto frames = wide_frames();
-  Pipeline p = through_mean({{3, 12, 12}}, 1, 0.25);
-  p.trace->strain = false;
-  EXPECT_EQ(trace(p, frames).report.trace->nearby_passes, 1U);  // c/h = 4: 268 values, and a third of the box
-  p.trace->seeds.points = {{3, 12, 12}, {12, 12, 3}, {20, 12, 20}};
-  EXPECT_EQ(trace(p, frames).report.trace->nearby_passes, 0U);
-  p.trace->seeds.points = {{3, 12, 12}};
-  p.fields = {"phi"};
-  EXPECT_EQ(trace(p, frames).report.trace->nearby_passes, 0U);  // whole grids are wanted anyway
-}
-
-TEST(TraceSeeds, LieOnAGridOverTheBox) {
-  Pipeline p = through_mean({}, 1, 0.5);
-  constexpr double side = HUGE_VAL;
-  p.trace->seeds.grid = {{-side, 2, -side}, {side, 2, side}, {4, 1, 2}};
-  const Histories h = trace(p, frames_of(uniform, {0, 1}));
-  ASSERT_EQ(h.layout.id.size(), 2U * 4U);
-  const auto& x = h.samples[0].position;
-  EXPECT_EQ((Vec3{x[0][0], x[1][0], x[2][0]}), (Vec3{1.5, 2, 0.5}));
-  EXPECT_EQ((Vec3{x[0][7], x[1][7], x[2][7]}), (Vec3{5.5, 2, 6.5}));
-}
-
-TEST(TraceSeeds, LieOnParticlesOfTheFirstFrame) {
-  auto frames = frames_of(uniform, {0, 1, 2});
-  frames[0].particles.position[0][9] += 0.25;
-  frames[2].particles.position[1][9] += 0.25;
-  Pipeline p = through_mean({}, 1, 0.5);
-  p.trace->seeds.particles = {{10, 3}, 1};
-  const Histories h = trace(p, frames);
-  EXPECT_THAT(h.layout.id, ElementsAre(3, 10));
-  EXPECT_EQ(h.samples[0].position[0][1], frames[0].particles.position[0][9]);
-  p.trace->through = TraceSpec::Through::frames;
-  p.trace->direction = TraceSpec::Direction::backward;
-  p.window = 1;
-  const Histories back = trace(p, frames);
-  EXPECT_EQ(back.samples[0].position[1][1], frames[2].particles.position[1][9]);
-  p.trace->seeds.particles = {{}, 100};
-  EXPECT_THAT(trace(p, frames).layout.id, ElementsAre(1, 101, 201, 301, 401, 501));
-  p.select.ids = {{150, 200}};
-  EXPECT_THAT(trace(p, frames).layout.id, ElementsAre(150));
 }
 
 std::string refusal(const Pipeline& p, const std::vector<Frame>& frames) {

@@ -1,7 +1,6 @@
 #include "write/hdf5_sink.hpp"
 
 #include <cmath>
-#include <map>
 #include <set>
 #include <tuple>
 
@@ -9,10 +8,13 @@
 
 #include "grainvdb/error.hpp"
 #include "unit/write/hdf5_reader.hpp"
+#include "unit/write/hdf5_scene.hpp"
 #include "unit/write/support.hpp"
 
 namespace grainvdb::hdf5_sink_test {
 namespace {
+
+using namespace testing::hdf5_scene;  // NOLINT: what the tests of this scene share
 
 using namespace testing;  // NOLINT: the folder's own helpers
 using ::testing::AllOf;
@@ -20,55 +22,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
-
-constexpr auto outside = static_cast<std::uint32_t>(Reason::outside);
-const std::string points = "/VTKHDF/PointData/";
-
-void write_scene(const Scene& scene, const std::string& folder) {
-  const auto sink = make_hdf5_sink(folder);
-  scene.write_all(*sink);
-  sink->commit(some_provenance());
-}
-
-bool same(float a, float b) {
-  return a == b || (std::isnan(a) && std::isnan(b));
-}
-
-/// Compares every value of the file with the scene's; the C order of the datasets is that of the loops.
-void expect_scene_in(const Scene& scene, const std::string& path) {
-  const Hdf5Reader file(path);
-  const hsize_t nx = static_cast<hsize_t>(scene.last.x - scene.first.x + 1);
-  const hsize_t ny = static_cast<hsize_t>(scene.last.y - scene.first.y + 1);
-  const hsize_t nz = static_cast<hsize_t>(scene.last.z - scene.first.z + 1);
-  const auto shape = [&](int components) {
-    std::vector<hsize_t> s{nz, ny, nx};
-    if (scene.times > 1) s.insert(s.begin(), static_cast<hsize_t>(scene.times));
-    if (components > 1) s.push_back(static_cast<hsize_t>(components));
-    return s;
-  };
-  for (const FieldMeta& m : scene.fields) {
-    const std::string name = points + m.name;
-    ASSERT_EQ(file.dims(name), shape(m.components)) << m.name;
-    EXPECT_TRUE(file.stored_as(name, H5T_IEEE_F32LE));
-    const std::vector<float> values = file.read<float>(name);
-    std::size_t i = 0, wrong = 0;
-    for (int t = 0; t < scene.times; ++t)
-      for_each_voxel(scene.first, scene.last, [&](const Coord& c) {
-        for (int k = 0; k < m.components; ++k)
-          wrong += same(values[i++], scene.is_active(c, t) ? known_value(c, k, t) : m.background) ? 0U : 1U;
-      });
-    EXPECT_EQ(wrong, 0U) << m.name;
-  }
-  ASSERT_EQ(file.dims(points + "mask"), shape(1));
-  EXPECT_TRUE(file.stored_as(points + "mask", H5T_STD_U32LE));
-  const std::vector<std::uint32_t> mask = file.read<std::uint32_t>(points + "mask");
-  std::size_t i = 0, wrong = 0;
-  for (int t = 0; t < scene.times; ++t)
-    for_each_voxel(scene.first, scene.last, [&](const Coord& c) {
-      wrong += mask[i++] == (scene.is_active(c, t) ? known_flags(c, t) : outside) ? 0U : 1U;
-    });
-  EXPECT_EQ(wrong, 0U);
-}
 
 TEST(Hdf5Sink, WritesEveryValueOfAStaticResult) {
   const TemporaryFolder folder;
@@ -328,86 +281,6 @@ TEST(Hdf5Sink, RefusesVoxelsOutsideTheBox) {
     }
   }
   EXPECT_THAT(folder.names(), IsEmpty());
-}
-
-TEST(Hdf5Sink, LeavesNothingBehindWithoutCommit) {
-  const TemporaryFolder folder;
-  {
-    const auto sink = make_hdf5_sink(folder.path());
-    Scene{}.write_all(*sink);
-    EXPECT_FALSE(folder.names().empty());
-  }
-  EXPECT_THAT(folder.names(), IsEmpty());
-  write_file(folder / "fields.hdf", "an older result");
-  {
-    const auto sink = make_hdf5_sink(folder.path());
-    Scene{}.write_all(*sink);
-  }
-  EXPECT_THAT(folder.names(), ElementsAre("fields.hdf"));
-  EXPECT_EQ(read_file(folder / "fields.hdf"), "an older result");
-}
-
-TEST(Hdf5Sink, ReplacesAnOlderResultWhole) {
-  const TemporaryFolder folder;
-  Scene scene;
-  scene.times = 2;
-  write_scene(scene, folder.path());
-  EXPECT_THAT(folder.names(), ElementsAre("fields.hdf", "fields.xmf2"));
-  scene.times = 1;
-  write_scene(scene, folder.path());
-  expect_scene_in(scene, folder / "fields.hdf");
-  EXPECT_THAT(folder.names(), ElementsAre("fields.hdf"));  // the sidecar described the older one
-}
-
-TEST(Hdf5Sink, NamesTheFilesThatItLeaves) {
-  const TemporaryFolder folder;
-  Scene scene;
-  const auto fixed = make_hdf5_sink(folder.path());
-  scene.write_all(*fixed);
-  EXPECT_THAT(fixed->files(), ElementsAre(folder / "fields.hdf"));
-  scene.times = 2;
-  const auto series = make_hdf5_sink(folder.path());
-  scene.write_all(*series);
-  EXPECT_THAT(series->files(), ElementsAre(folder / "fields.hdf", folder / "fields.xmf2"));
-}
-
-herr_t expect_no_time_stamp(hid_t, const char* name, const H5O_info_t* info, void*) {
-  EXPECT_EQ(info->ctime, 0) << name;
-  EXPECT_EQ(info->mtime, 0) << name;
-  return 0;
-}
-
-TEST(Hdf5Sink, GivesTheSameBytesForTheSameResult) {
-  const TemporaryFolder folder;
-  Scene scene;
-  scene.times = 2;
-  write_scene(scene, folder / "a");
-  write_scene(scene, folder / "b");
-  EXPECT_TRUE(read_file(folder / "a/fields.hdf") == read_file(folder / "b/fields.hdf"));
-  EXPECT_TRUE(read_file(folder / "a/fields.xmf2") == read_file(folder / "b/fields.xmf2"));
-  const Hdf5Reader file(folder / "a/fields.hdf");
-  H5Ovisit1(file.id(), H5_INDEX_NAME, H5_ITER_INC, expect_no_time_stamp, nullptr);
-}
-
-TEST(Hdf5Sink, RefusesToBeUsedOutOfOrder) {
-  const TemporaryFolder folder;
-  const Scene scene;
-  EXPECT_THROW(make_hdf5_sink(folder.path())->commit({}), std::logic_error);
-  EXPECT_THROW(scene.write_time(*make_hdf5_sink(folder.path()), 0), std::logic_error);
-  const auto sink = make_hdf5_sink(folder.path());
-  sink->begin(scene.layout());
-  EXPECT_THROW(sink->begin(scene.layout()), std::logic_error);
-  EXPECT_THROW(sink->commit({}), std::logic_error);
-  EXPECT_THROW(sink->write(scene.time(0), {}, nullptr), std::invalid_argument);
-  scene.write_time(*sink, 0);
-  EXPECT_THROW(scene.write_time(*sink, 0), std::logic_error);
-  sink->commit({});
-  OutputLayout nothing = scene.layout();
-  nothing.time_count = 0;
-  EXPECT_THROW(make_hdf5_sink(folder.path())->begin(nothing), std::invalid_argument);
-  nothing = scene.layout();
-  nothing.last.x = nothing.first.x - 1;
-  EXPECT_THROW(make_hdf5_sink(folder.path())->begin(nothing), std::invalid_argument);
 }
 
 }  // namespace
