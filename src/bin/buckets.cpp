@@ -22,13 +22,21 @@ struct Images {
   std::int64_t last = 0;
 };
 
+[[noreturn]] void refuse(double x) {
+  throw std::invalid_argument("position " + std::to_string(x) + " does not fit the voxel index range");
+}
+
+// Whether the leaves within `reach` (in voxels) of index position u can be numbered.
+bool fits(double u, double reach) {
+  constexpr double largest = std::numeric_limits<std::int32_t>::max() - 4 * leaf_edge;
+  return std::abs(u) + 2 * reach < largest;
+}
+
 // The wrapped coordinate, and those of its images from which a voxel of the stored period is within `reach` (in
 // voxels).
 Images images(const Lattice& lattice, int axis, double x, double reach) {
   const double u = lattice.wrap_index(axis, lattice.to_index(axis, x));
-  constexpr double largest = std::numeric_limits<std::int32_t>::max() - 4 * leaf_edge;
-  if (!(std::abs(u) + 2 * reach < largest))
-    throw std::invalid_argument("position " + std::to_string(x) + " does not fit the voxel index range");
+  if (!fits(u, reach)) refuse(x);
   const auto& period = lattice.period(axis);
   if (!period) return {u, 0, 0};
   const double n = period->count;
@@ -82,6 +90,15 @@ class PointImages {
         }
   }
   bool one_each() const { return !cells_ && !lattice_.period(0) && !lattice_.period(1) && !lattice_.period(2); }
+  /// The only one of each point.
+  Vec3 only(std::size_t p) const {
+    Vec3 u;
+    for (int a = 0; a < 3; ++a) {
+      u[a] = lattice_.to_index(a, position_[a][p]);
+      if (!fits(u[a], reach_)) refuse(position_[a][p]);
+    }
+    return u;
+  }
 
  private:
   const Lattice& lattice_;
@@ -93,9 +110,7 @@ class PointImages {
 Unsorted all_images(const PointImages& images, std::size_t points) {
   if (images.one_each()) {
     Unsorted all(points);
-    parallel_for(points, [&](std::size_t p) {
-      images.for_each(p, [&](const Vec3& u) { all.image[p] = {u, static_cast<std::uint32_t>(p)}; });
-    });
+    parallel_for(points, [&](std::size_t p) { all.image[p] = {images.only(p), static_cast<std::uint32_t>(p)}; });
     return all;
   }
   std::vector<std::size_t> start(points + 1);
