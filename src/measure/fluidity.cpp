@@ -194,8 +194,8 @@ MeasurementInfo fluidity_fit() {
   info.description = "g d/dv against packing fraction, with the law (3) and a fit of (A20)";
   info.equation = "F(phi) = A - [(phi-B) + sqrt((phi-B)^2+C)]/D  (A20)";
   info.options = options();
-  info.conflict = bin_conflict;
-  info.needs = [](const OptionValues& values) { return MeasurementNeeds{{}, sample_fields(with_spin(values))}; };
+  info.conflict = sample_conflict;
+  info.needs = [](const OptionValues& values) { return sample_needs(values, sample_fields(with_spin(values))); };
   info.make = [](const MeasurementSetting& setting) { return std::make_unique<FluidityMeasurement>(setting); };
   return info;
 }

@@ -267,7 +267,7 @@ std::optional<OptionConflict> conflict(const OptionValues& values) {
     return OptionConflict{
         "inertial_above", std::to_string(number_option(values, "inertial_above")),
         "no less than quasi_static_below, which is " + std::to_string(number_option(values, "quasi_static_below"))};
-  return bin_conflict(values);
+  return sample_conflict(values);
 }
 
 MeasurementInfo rheology() {
@@ -277,7 +277,7 @@ MeasurementInfo rheology() {
   info.equation = "mu(I) = mu_0 + (mu_infinity-mu_0)/(I_0/I+1)";
   info.options = options();
   info.conflict = conflict;
-  info.needs = [](const OptionValues&) { return MeasurementNeeds{{}, sample_fields(false)}; };
+  info.needs = [](const OptionValues& values) { return sample_needs(values, sample_fields(false)); };
   info.make = [](const MeasurementSetting& setting) { return std::make_unique<RheologyMeasurement>(setting); };
   return info;
 }

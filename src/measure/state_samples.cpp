@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "measure/option_values.hpp"
+
 namespace grainvdb {
 namespace {
 
@@ -90,16 +92,50 @@ class VoxelSamples : public StateSamples {
   std::vector<StateSample> samples_;
 };
 
+bool is_from_planes(const OptionValues& options) {
+  return std::get<std::string>(options.at("source")) == "planes";
+}
+
 }  // namespace
 
 std::vector<OptionInfo> sample_options() {
   std::vector<OptionInfo> options{{.name = "source",
                                    .default_value = std::string("profile"),
-                                   .help = "profile: averages over planes or shells; voxels: each by itself, those of "
-                                           "all output times",
-                                   .choices = {"profile", "voxels"}}};
+                                   .help =
+                                       "profile: averages over planes or shells; planes: exact averages over "
+                                       "planes, as plane_profile; voxels: each by itself, those of all output times",
+                                   .choices = {"profile", "planes", "voxels"}}};
   for (OptionInfo& option : bin_options()) options.push_back(std::move(option));
+  options.push_back(plane_area_option());
   return options;
+}
+
+std::optional<OptionConflict> sample_conflict(const OptionValues& options) {
+  if (auto conflict = bin_conflict(options)) return conflict;
+  if (!is_from_planes(options)) return std::nullopt;
+  const BinSpec spec = bin_spec(options);
+  if (spec.geometry == BinSpec::Geometry::shells)
+    return OptionConflict{"geometry", "'shells' with source 'planes'", "'planes', or source: profile"};
+  if (spec.points > 0)
+    return OptionConflict{"points", std::to_string(spec.points) + " with source 'planes'",
+                          "0: exact averages are over whole planes"};
+  return std::nullopt;
+}
+
+MeasurementNeeds sample_needs(const OptionValues& options, std::vector<std::string> fields) {
+  if (is_from_planes(options)) return {.planes = plane_needs(options, std::move(fields))};
+  return {.fields = std::move(fields)};
+}
+
+OptionInfo plane_area_option() {
+  return {.name = "area",
+          .default_value = 0.0,
+          .help = "of a plane, for exact averages [length^2]; 0: that of the box, periodic along both axes",
+          .minimum = 0};
+}
+
+PlaneNeeds plane_needs(const OptionValues& options, std::vector<std::string> fields) {
+  return {{axis_option(options, "axis"), number_option(options, "area")}, std::move(fields)};
 }
 
 std::vector<std::string> sample_fields(bool spin) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Quantities of the flow at many places: averaged over planes or shells, or voxel by voxel.
+/// Quantities of the flow at many places: averaged over planes or shells, exactly over planes, or voxel by voxel.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -35,8 +35,17 @@ class StateSamples {
   virtual std::size_t times() const = 0;
 };
 
-/// bin_options() and `source`: profile or voxels.
+/// bin_options(), `source`: profile, planes or voxels, and the area of the planes.
 std::vector<OptionInfo> sample_options();
+/// Refuses what bin_conflict does, and options that the source does not know.
+std::optional<OptionConflict> sample_conflict(const OptionValues& options);
+
+/// These fields, from the source that the options say.
+MeasurementNeeds sample_needs(const OptionValues& options, std::vector<std::string> fields);
+
+/// The area of the planes that exact averages are over, and what is needed for these fields.
+OptionInfo plane_area_option();
+PlaneNeeds plane_needs(const OptionValues& options, std::vector<std::string> fields);
 
 /// What the samples need of the fields; with rotational_fluctuation where `spin` is set.
 std::vector<std::string> sample_fields(bool spin);
