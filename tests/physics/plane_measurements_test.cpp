@@ -13,6 +13,7 @@
 #include "grainvdb/measurement.hpp"
 #include "grainvdb/moment.hpp"
 #include "pipeline/measure_needs.hpp"
+#include "support/memory_source.hpp"
 #include "support/random.hpp"
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
@@ -38,12 +39,19 @@ Pipeline measuring(Pipeline p, const std::string& measurement, const OptionValue
   return p;
 }
 
+/// Without any results but the tables.
+RunReport measure(Pipeline p, const std::vector<Frame>& frames) {
+  p.input.contacts.files = {"memory"};
+  MemorySource source(frames);
+  return run_pipeline(p, make_plan(p), source, {});
+}
+
 OptionValues fields(std::vector<std::string> names) {
   return {{"fields", std::move(names)}};
 }
 
-const Table& table_of(const Result& result, const std::string& name) {
-  for (const Table& table : result.report.tables)
+const Table& table_of(const RunReport& report, const std::string& name) {
+  for (const Table& table : report.tables)
     if (table.name == name) return table;
   throw std::out_of_range(name);
 }
@@ -69,7 +77,7 @@ TEST(PlaneProfile, HoldsAllMaterialAndRigidMotion) {
       std::fill(f.particles.velocity[a].begin(), f.particles.velocity[a].end(), std::array{7.0, 0.0, -1.0}[a]);
   Pipeline p = measuring(scene.pipeline({}), "plane_profile", {});
   p.window = 1;
-  const Table table = table_of(run(p, scene.frames), "plane_profile");
+  const Table table = table_of(measure(p, scene.frames), "plane_profile");
   double volume = 0;
   for (const Frame& f : scene.frames)
     for (const double r : f.particles.radius) volume += sphere_volume(r) / static_cast<double>(scene.frames.size());
@@ -95,7 +103,7 @@ TEST(PlaneProfile, IsWhatTheProfileOfFieldsConvergesTo) {
   p.measure["profile"] = options_of("profile", same);
   for (const std::size_t window : {0U, 1U}) {
     p.window = window;
-    const Result result = run(p, scene.frames);
+    const RunReport result = measure(p, scene.frames);
     const Table &planes = table_of(result, "plane_profile"), &voxels = table_of(result, "profile");
     EXPECT_EQ(planes.columns.size() + 2, voxels.columns.size());  // height and voxels
     for (const TableColumn& c : planes.columns) {
@@ -117,7 +125,7 @@ TEST(PlaneProfile, HasSpeciesThatAddUp) {
                         "contact_stress", "contact_stress_fine", "contact_stress_coarse", "contact_stress_wall"}));
   p.species = {
       {"fine", {1}, {}, std::pair(0.0, 0.94)}, {"coarse", {1}, {}, std::pair(0.94, 9.0)}, {"wall", {2, 3}, {}, {}}};
-  const Table table = table_of(run(p, scene.frames), "plane_profile");
+  const Table table = table_of(measure(p, scene.frames), "plane_profile");
   std::size_t compared = 0;
   for (std::size_t n = 0; n < column(table, "z").size(); ++n) {
     const double phi = column(table, "phi")[n];
@@ -162,9 +170,9 @@ TEST(PlaneProfile, NeedsAnArea) {
   frame.box = {{0, 0, 0}, {6, 6, 6}, {true, false, false}};
   add_particle(frame.particles, 1, 1, {1, 2, 3.4}, {}, {}, 0.5, 1);
   Pipeline p = measuring(make_pipeline(0.5, {0, 0, 0}, 3, {}), "plane_profile", {});
-  EXPECT_THROW(run(p, {frame}), InputError);
+  EXPECT_THROW(measure(p, {frame}), InputError);
   p = measuring(p, "plane_profile", {{"area", 12.0}});
-  const Table table = table_of(run(p, {frame}), "plane_profile");
+  const Table table = table_of(measure(p, {frame}), "plane_profile");
   for (std::size_t n = 0; n < column(table, "z").size(); ++n)
     EXPECT_NEAR(column(table, "phi")[n], sphere_volume(0.5) * LucyKernel(3).marginal(column(table, "z")[n] - 3.4) / 12,
                 e * sphere_volume(0.5) / 12);
@@ -183,7 +191,7 @@ TEST(PlaneProfile, KnowsWallsAlongThePlanesAlone) {
   p.walls.kernel = WallSpec::Kernel::renormalise;
   p.walls.surfaces = {{Wall::Shape::plane, {0, 0, 0}, {0, 0, 1}}};
   const double expected = 20000 * sphere_volume(0.1) / (6 * 6 * 9);
-  const Table table = table_of(run(p, {frame}), "plane_profile");
+  const Table table = table_of(measure(p, {frame}), "plane_profile");
   std::size_t compared = 0;
   for (std::size_t n = 0; n < column(table, "z").size(); ++n) {
     if (!(column(table, "z")[n] > 0 && column(table, "z")[n] < 7)) continue;
@@ -192,7 +200,7 @@ TEST(PlaneProfile, KnowsWallsAlongThePlanesAlone) {
   }
   EXPECT_EQ(compared, 14U);
   p.walls.surfaces = {{Wall::Shape::cylinder, {3, 3, 0}, {0, 0, 1}, 2.0, 0, true}};
-  EXPECT_THROW(run(p, {frame}), ConfigError);
+  EXPECT_THROW(measure(p, {frame}), ConfigError);
 }
 
 // g d/δv at the places of the profile, and what is fitted to it.
@@ -202,7 +210,7 @@ TEST(PlaneSamples, AreThoseOfThePlaneProfile) {
   p.measure["plane_profile"] = options_of("plane_profile", fields({"phi", "gd_over_dv", "dv_over_d_domega"}));
   p.measure["rheology"] = options_of("rheology", {{"source", std::string("planes")}});
   p.window = 1;
-  const Result result = run(p, scene.frames);
+  const RunReport result = measure(p, scene.frames);
   const Table &samples = table_of(result, "fluidity"), &planes = table_of(result, "plane_profile");
   ASSERT_GT(column(samples, "phi").size(), 5U);
   std::size_t compared = 0;
@@ -237,7 +245,7 @@ TEST(PlaneBalance, FindsGravity) {
   Pipeline p = measuring(make_pipeline(0.5, {0, 0, 0.1}, 3, {}), "stationarity",
                          {{"source", std::string("planes")}, {"from", 3.1}, {"to", 12.0}, {"gravity", 9.81}});
   p.select.types = {1};
-  const Table& table = table_of(run(p, {columns.frame}), "stationarity");
+  const Table table = table_of(measure(p, {columns.frame}), "stationarity");
   EXPECT_NEAR(number(table, "gravity").value, columns.gravity, 1e-3 * columns.gravity);
   EXPECT_LT(number(table, "balance_residual").value, 1e-3);
 }

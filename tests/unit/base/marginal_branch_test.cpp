@@ -1,5 +1,6 @@
 // The marginal of the kernel along branches, and its derivative.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -21,16 +22,18 @@ long double marginal(long double zeta) {
   return 21.0L / 16 * p * p * (1 + 4 * zeta + 5 * zeta * zeta);
 }
 
-/// The mean of w₁ c from ζ to ζ + d, a polynomial between -1, 0 and 1.
+/// The mean of w₁ c from ζ to ζ + d, a polynomial between -1, 0 and 1: over the part of the branch between these, so
+/// that short branches keep their length.
 long double mean(long double zeta, long double d) {
   if (d == 0) return marginal(zeta);
+  std::array<long double, 3> at{(-1 - zeta) / d, -zeta / d, (1 - zeta) / d};
+  std::sort(at.begin(), at.end());
   long double sum = 0;
-  const long double low = std::min(zeta, zeta + d), high = std::max(zeta, zeta + d);
-  for (const auto& [from, to] : {std::pair(-1.0L, 0.0L), std::pair(0.0L, 1.0L)}) {
-    const long double a = std::max(low, from), b = std::min(high, to);
-    if (a < b) sum += quadrature::integrate(marginal, a, b, 1);
+  for (std::size_t n = 0; n < 2; ++n) {
+    const long double a = std::clamp(at[n], 0.0L, 1.0L), b = std::clamp(at[n + 1], 0.0L, 1.0L);
+    if (a < b) sum += quadrature::integrate([&](long double s) { return marginal(zeta + s * d); }, a, b, 1);
   }
-  return sum / std::abs(d);
+  return sum;
 }
 
 // Relative to the value at the nearest end: rounding of a place by ε moves w₁ by a part 4ε/(1-ζ), which is all that
