@@ -21,10 +21,32 @@ struct TemperatureFloor {
   }
 };
 
+/// Which fields a state is made of: mean diameter and temperature are those of a species, where one is named; the flow
+/// is that of all grains.
+class StateFields {
+ public:
+  explicit StateFields(const OptionValues& options) : species_(std::get<std::string>(options.at("species"))) {}
+
+  std::string operator()(const std::string& field) const {
+    return !species_.empty() && is_of_grains(field) ? field + '_' + species_ : field;
+  }
+  bool are_of_species() const { return !species_.empty(); }
+
+ private:
+  static bool is_of_grains(const std::string& field) { return field == "mean_diameter" || field == "temperature"; }
+
+  std::string species_;
+};
+
 class ProfileSamples : public StateSamples {
  public:
-  ProfileSamples(FieldProfile profile, TemperatureFloor floor, std::size_t quantities, StateQuantities f)
-      : profile_(std::move(profile)), floor_(floor), quantities_(quantities), f_(std::move(f)) {}
+  ProfileSamples(FieldProfile profile, StateFields fields, TemperatureFloor floor, std::size_t quantities,
+                 StateQuantities f)
+      : profile_(std::move(profile)),
+        fields_(std::move(fields)),
+        floor_(floor),
+        quantities_(quantities),
+        f_(std::move(f)) {}
 
   void take(const OutputFields& output) override { profile_.take(output); }
   std::size_t times() const override { return profile_.times(); }
@@ -35,7 +57,8 @@ class ProfileSamples : public StateSamples {
       const FieldProfile::Means place(profile_, bin);
       StateSample sample{place.position(), place.height(), {}};
       sample.values = profile_.estimate(bin, quantities_, [&](const FieldProfile::Means& means, std::span<double> out) {
-        FlowState state = means.state();
+        FlowState state =
+            flow_state([&](const char* field, int component = 0) { return means.value(fields_(field), component); });
         floor_.set(state);
         f_(state, out);
       });
@@ -46,6 +69,7 @@ class ProfileSamples : public StateSamples {
 
  private:
   FieldProfile profile_;
+  StateFields fields_;
   TemperatureFloor floor_;
   std::size_t quantities_;
   StateQuantities f_;
@@ -53,9 +77,9 @@ class ProfileSamples : public StateSamples {
 
 class VoxelSamples : public StateSamples {
  public:
-  VoxelSamples(const BinSpec& spec, const Lattice& lattice, TemperatureFloor floor, std::size_t quantities,
-               StateQuantities f)
-      : bins_(spec, lattice), floor_(floor), quantities_(quantities), f_(std::move(f)) {}
+  VoxelSamples(const BinSpec& spec, const Lattice& lattice, StateFields fields, TemperatureFloor floor,
+               std::size_t quantities, StateQuantities f)
+      : bins_(spec, lattice), fields_(std::move(fields)), floor_(floor), quantities_(quantities), f_(std::move(f)) {}
 
   void take(const OutputFields& output) override {
     if (output.time.frame_count == 0) return;
@@ -75,9 +99,9 @@ class VoxelSamples : public StateSamples {
   std::vector<StateSample> samples() const override { return samples_; }
 
  private:
-  static FlowState state_at(const OutputFields& output, const VoxelPlace& place) {
+  FlowState state_at(const OutputFields& output, const VoxelPlace& place) const {
     const auto value = [&](const char* name, int component = 0) {
-      const auto field = output.fields.find(name);
+      const auto field = output.fields.find(fields_(name));
       if (field == output.fields.end()) return FlowState::unknown;
       return static_cast<double>(field->second.leaf(place.leaf, component)[place.offset]);
     };
@@ -85,6 +109,7 @@ class VoxelSamples : public StateSamples {
   }
 
   Bins bins_;
+  StateFields fields_;
   TemperatureFloor floor_;
   std::size_t quantities_;
   StateQuantities f_;
@@ -107,6 +132,11 @@ std::vector<OptionInfo> sample_options() {
                                    .choices = {"profile", "planes", "voxels"}}};
   for (OptionInfo& option : bin_options()) options.push_back(std::move(option));
   options.push_back(plane_area_option());
+  options.push_back({.name = "species",
+                     .default_value = std::string(),
+                     .help =
+                         "whose mean diameter and temperature are taken, beside stress, rate and phi of all grains; "
+                         "empty: all grains"});
   return options;
 }
 
@@ -138,21 +168,25 @@ PlaneNeeds plane_needs(const OptionValues& options, std::vector<std::string> fie
   return {{axis_option(options, "axis"), number_option(options, "area")}, std::move(fields)};
 }
 
-std::vector<std::string> sample_fields(bool spin) {
-  std::vector<std::string> fields = flow_fields();
+std::vector<std::string> sample_fields(const OptionValues& options, bool spin) {
+  const StateFields of_state(options);
+  std::vector<std::string> fields;
+  for (const std::string& field : flow_fields()) fields.push_back(of_state(field));
+  if (of_state.are_of_species()) fields.push_back(volume_weight(of_state("temperature")));
   if (spin) fields.push_back("rotational_fluctuation");
   return fields;
 }
 
-std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, std::vector<std::string> fields,
-                                           std::size_t quantities, StateQuantities f) {
+std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, bool spin, std::size_t quantities,
+                                           StateQuantities f) {
   const TemperatureFloor floor{option<double>(setting.stages, "gd_over_dv", "temperature_min"),
                                option<double>(setting.stages, "velocity", "resolution")};
   const BinSpec spec = bin_spec(setting.options);
+  const StateFields fields(setting.options);
   if (std::get<std::string>(setting.options.at("source")) == "voxels")
-    return std::make_unique<VoxelSamples>(spec, setting.lattice, floor, quantities, std::move(f));
-  return std::make_unique<ProfileSamples>(FieldProfile(spec, setting.lattice, std::move(fields)), floor, quantities,
-                                          std::move(f));
+    return std::make_unique<VoxelSamples>(spec, setting.lattice, fields, floor, quantities, std::move(f));
+  return std::make_unique<ProfileSamples>(FieldProfile(spec, setting.lattice, sample_fields(setting.options, spin)),
+                                          fields, floor, quantities, std::move(f));
 }
 
 std::vector<double> fit_errors(const std::vector<StateSample>& samples, std::size_t index, double floor) {

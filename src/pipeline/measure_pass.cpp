@@ -8,6 +8,7 @@
 
 #include "base/ordered_pipeline.hpp"
 #include "grainvdb/memory_model.hpp"
+#include "pipeline/good_frames.hpp"
 #include "pipeline/material.hpp"
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/output_units.hpp"
@@ -31,8 +32,9 @@ std::vector<std::size_t> up_to_stop(std::vector<std::size_t> frames, const RunRe
 
 void add_bad_frames(const std::vector<BadFrame>& more, RunReport& report) {
   for (const BadFrame& frame : more)
-    if (std::none_of(report.bad_frames.begin(), report.bad_frames.end(),
-                     [&](const BadFrame& known) { return to_string(known) == to_string(frame); }))
+    if (std::none_of(report.bad_frames.begin(), report.bad_frames.end(), [&](const BadFrame& known) {
+          return frame.step ? known.step == frame.step : to_string(known) == to_string(frame);
+        }))
       report.bad_frames.push_back(frame);
 }
 
@@ -93,7 +95,8 @@ void MeasurePass::visit_planes(PlaneRun& run, const RunReport& report,
           entry.measurement->take(output);
     });
   };
-  const RunReport on_planes = compute_fields(run.pipeline, run.plan, source_, take, progress);
+  GoodFrames source(source_, report.bad_frames);
+  const RunReport on_planes = compute_fields(run.pipeline, run.plan, source, take, progress);
   measured_ = std::max(measured_, on_planes.frames);
   for (const auto& [step, seconds] : on_planes.seconds) seconds_on_planes_.emplace_back(step + " on planes", seconds);
   bad_on_planes_.insert(bad_on_planes_.end(), on_planes.bad_frames.begin(), on_planes.bad_frames.end());

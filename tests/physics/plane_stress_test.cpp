@@ -18,7 +18,7 @@ namespace {
 
 // Half branches by their definition, with the closed form of the marginal along them (which its own tests hold to
 // quadrature).
-TEST(PlaneStress, ContactStressEqualsItsDefinition) {
+TEST(PlaneStress, OfContactsEqualsItsDefinition) {
   for (const Scene& scene : {periodic_scene(), walled_scene(), dilute_scene()})
     for (const int axis : {scene.name == "walled" ? 2 : 0, 2}) {
       SCOPED_TRACE(scene.name + std::to_string(axis));
@@ -156,7 +156,7 @@ TEST(PlaneStress, LoseNothingToALargeVelocity) {
 
 // Physics section 6, to what a float holds: -A σ_zz(z) = Σ m g CDF((z_α - z)/c), and without the half branches in the
 // wall less the forces of the wall, Σ F CDF((z_c - z)/c): that is ∂σ_zz/∂z + f_z = ρ g integrated from z upwards.
-TEST(PlaneStress, StressOfAColumnAtRestCarriesItsWeight) {
+TEST(PlaneStress, OfAColumnAtRestCarriesItsWeight) {
   const StaticColumns columns(31);
   const double c = 3;
   Pipeline p = make_pipeline(0.5, {0, 0, 0.1}, c, {"contact_stress", "wall_force", "density"});
