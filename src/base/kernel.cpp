@@ -147,19 +147,22 @@ double LucyKernel::marginal_gradient(double z) const {
 // terms that are all positive, where the difference of antiderivatives loses what a branch along the planes, or the rim
 // of the kernel, leaves of it.
 double LucyKernel::marginal_line_integral(double z, double dz) const {
+  static const std::span<const LineNode> rule = gauss_rule(4);
+  // ∫ ds over a part of the branch on one side of the centre, from 0 ≤ begin to end ≤ 1.
+  const auto on_one_side = [&](double begin, double end) {
+    const double half = 0.5 * (end - begin), middle = 0.5 * (begin + end);
+    double sum = 0;
+    for (const LineNode& node : rule) sum += node.weight * marginal(z + (middle + half * node.x) * dz);
+    return half * sum;
+  };
+  const double from = std::abs(z), to = std::abs(z + dz);
+  if (z * (z + dz) >= 0 && std::max(from, to) <= cutoff_) return on_one_side(0, 1);
   if (!(std::abs(dz) > 1e-17 * cutoff_)) return marginal(z);
-  // Where on the branch, from 0 to 1, the kernel begins, has its centre and ends.
+  // Where on the branch the kernel begins, has its centre and ends.
   std::array<double, 3> at{(-cutoff_ - z) / dz, -z / dz, (cutoff_ - z) / dz};
   if (dz < 0) std::swap(at[0], at[2]);
   for (double& s : at) s = std::clamp(s, 0.0, 1.0);
-  double sum = 0;
-  for (std::size_t side = 0; side < 2; ++side) {
-    const double half = 0.5 * (at[side + 1] - at[side]);
-    if (!(half > 0)) continue;
-    const double middle = 0.5 * (at[side] + at[side + 1]);
-    for (const LineNode& node : gauss_rule(4)) sum += half * node.weight * marginal(z + (middle + half * node.x) * dz);
-  }
-  return sum;
+  return (at[0] < at[1] ? on_one_side(at[0], at[1]) : 0) + (at[1] < at[2] ? on_one_side(at[1], at[2]) : 0);
 }
 
 double LucyKernel::radial_integral(double r) const {
