@@ -1,4 +1,5 @@
 // Stresses and temperatures as exact averages over planes: by their definitions and in exact cases.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -182,6 +183,56 @@ TEST(PlaneStress, OfAColumnAtRestCarriesItsWeight) {
     });
     EXPECT_GE(compared, 20U);
   }
+}
+
+/// The columns on a wall that is no grain: contacts with the grains below them become contacts with it.
+Frame on_a_mesh(const StaticColumns& columns) {
+  Frame frame = columns.frame;
+  const Particles& p = columns.frame.particles;
+  frame.contacts = {};
+  const Contacts& all = columns.frame.contacts;
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Vec3 force{all.force[0][k], all.force[1][k], all.force[2][k]};
+    const Vec3 point{all.point[0][k], all.point[1][k], all.point[2][k]};
+    const auto below = static_cast<std::size_t>(std::find(p.id.begin(), p.id.end(), all.id2[k]) - p.id.begin());
+    if (p.type[below] == 1) {
+      add_contact(frame.contacts, all.id1[k], all.id2[k], force, point);
+      continue;
+    }
+    frame.wall_contacts.id.push_back(all.id1[k]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      frame.wall_contacts.force[a].push_back(force[a]);
+      frame.wall_contacts.point[a].push_back(point[a]);
+    }
+  }
+  return frame;
+}
+
+// Contacts with walls have a half branch in the grain alone, so that stress and force of the wall balance either way.
+TEST(PlaneStress, TakesInContactsWithWalls) {
+  const StaticColumns columns(31);
+  const double c = 3;
+  Pipeline p = make_pipeline(0.5, {0, 0, 0.1}, c, {"contact_stress", "wall_force"});
+  p.select.types = {1};
+  const Frame frame = on_a_mesh(columns);
+  ASSERT_EQ(frame.wall_contacts.size(), columns.foot_height.size());
+  const Result result = run_on_planes(p, 2, {frame});
+  const double allowed = 1e-10 * columns.total_weight();
+  const std::size_t planes = for_each_plane(result.only().field("contact_stress"), 2, [&](const Coord& at) {
+    const double z = 0.1 + (at.z + 0.5) * 0.5;
+    double below = 0, of_wall = 0;
+    for (std::size_t n = 0; n < columns.height.size(); ++n)
+      below += columns.weight[n] * marginal_cdf((columns.height[n] - z) / c);
+    for (std::size_t n = 0; n < columns.foot_height.size(); ++n) {
+      below -= columns.foot_load[n] * marginal_cdf((columns.foot_height[n] - z) / c);
+      of_wall += columns.foot_load[n] * LucyKernel(c).marginal(z - columns.foot_height[n]);
+    }
+    EXPECT_NEAR(-columns.area() * result.only().field("contact_stress").at(at, 8), below,
+                float_rounding * std::abs(below) + allowed);
+    EXPECT_NEAR(columns.area() * result.only().field("wall_force").at(at, 2), of_wall,
+                float_rounding * std::abs(of_wall) + allowed);
+  });
+  EXPECT_GT(planes, 20U);
 }
 
 }  // namespace
