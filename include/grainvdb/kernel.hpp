@@ -46,6 +46,13 @@ class LucyKernel {
   double marginal(double z) const;
   double marginal_integral(double z) const;
 
+  /// dw₁/dz of the marginal [1/length²].
+  double marginal_gradient(double z) const;
+
+  /// ∫₀¹ w₁(z + s dz) ds, the mean of the marginal along a branch from z to z + dz, accurate to rounding however short
+  /// the branch and faint the kernel is there [1/length].
+  double marginal_line_integral(double z, double dz) const;
+
   /// ∫ W dV over the ball of radius r ≥ 0 about the centre [1].
   double radial_integral(double r) const;
 

@@ -12,6 +12,7 @@
 #include "grainvdb/kernel.hpp"
 #include "grainvdb/lattice.hpp"
 #include "grainvdb/options.hpp"
+#include "grainvdb/planes.hpp"
 #include "grainvdb/stage.hpp"
 #include "grainvdb/table.hpp"
 #include "grainvdb/units.hpp"
@@ -20,11 +21,20 @@ namespace grainvdb {
 
 struct OutputFields;
 
+/// Fields as exact averages over planes.
+struct PlaneNeeds {
+  Planes planes;
+  std::vector<std::string> fields;
+};
+
 /// What a measurement must see.
 struct MeasurementNeeds {
   std::optional<ColumnSet> particles{};  ///< of every frame, beside id and position; nothing: no frames
   std::vector<std::string> fields{};     ///< of every output time; none: no fields
   bool kernel = false;                   ///< the lattice and the kernel, where there are no fields
+  /// In place of the fields of output times, their exact averages over planes: handed over likewise, on a column of
+  /// voxels, one for each plane, whose indices along the normal are those of the lattice.
+  std::optional<PlaneNeeds> planes{};
 };
 
 /// What is known before the first frame.

@@ -11,6 +11,7 @@
 #include "grainvdb/error.hpp"
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/options.hpp"
+#include "grainvdb/planes.hpp"
 #include "grainvdb/reduced_units.hpp"
 #include "grainvdb/species.hpp"
 #include "grainvdb/stage.hpp"
@@ -83,11 +84,15 @@ struct Pipeline {
   std::optional<ReducedUnits> reduced;  ///< units of all that is written; without: those of the dump
   std::optional<TraceSpec> trace;       ///< histories of tracers, where they are wanted
   std::map<std::string, OptionValues> measure;  ///< the wanted measurements by name, with their options
+  std::optional<Planes> planes;  ///< of which fields are exact averages, in place of values at voxels: as measured
   Limits limits;
   std::string resolved;                   ///< this pipeline as YAML with all defaults, for the provenance
   std::map<std::string, Location> where;  ///< where each key stands, e.g. "kernel.cutoff"; overrides stand at "--set"
   Location location(const std::string& key) const;  ///< of a key, or of the file when the key was not given
 };
+
+/// The key that wants the fields of the pipeline: output.fields, or measure where they are averages over planes.
+std::string key_of_fields(const Pipeline& pipeline);
 
 /// What must be computed: the fields that are written, then those that the tracers need.
 std::vector<std::string> computed_fields(const Pipeline& pipeline);

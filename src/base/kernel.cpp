@@ -136,6 +136,35 @@ double LucyKernel::marginal_integral(double z) const {
   return std::copysign(std::min(half, 0.5), z);
 }
 
+double LucyKernel::marginal_gradient(double z) const {
+  const double zeta = std::abs(z) * inverse_cutoff_;
+  if (!(zeta < 1)) return 0;
+  const double p = 1 - zeta;
+  return -105.0 / 8 * inverse_cutoff_ * inverse_cutoff_ * p * p * p * (1 + 3 * zeta) * (z * inverse_cutoff_);
+}
+
+// On either side of its centre w₁ is a polynomial of degree 6, which the 4-point Gauss rule integrates exactly: from
+// terms that are all positive, where the difference of antiderivatives loses what a branch along the planes, or the rim
+// of the kernel, leaves of it.
+double LucyKernel::marginal_line_integral(double z, double dz) const {
+  static const std::span<const LineNode> rule = gauss_rule(4);
+  // ∫ ds over a part of the branch on one side of the centre, from 0 ≤ begin to end ≤ 1.
+  const auto on_one_side = [&](double begin, double end) {
+    const double half = 0.5 * (end - begin), middle = 0.5 * (begin + end);
+    double sum = 0;
+    for (const LineNode& node : rule) sum += node.weight * marginal(z + (middle + half * node.x) * dz);
+    return half * sum;
+  };
+  const double from = std::abs(z), to = std::abs(z + dz);
+  if (z * (z + dz) >= 0 && std::max(from, to) <= cutoff_) return on_one_side(0, 1);
+  if (!(std::abs(dz) > 1e-17 * cutoff_)) return marginal(z);
+  // Where on the branch the kernel begins, has its centre and ends.
+  std::array<double, 3> at{(-cutoff_ - z) / dz, -z / dz, (cutoff_ - z) / dz};
+  if (dz < 0) std::swap(at[0], at[2]);
+  for (double& s : at) s = std::clamp(s, 0.0, 1.0);
+  return (at[0] < at[1] ? on_one_side(at[0], at[1]) : 0) + (at[1] < at[2] ? on_one_side(at[1], at[2]) : 0);
+}
+
 double LucyKernel::radial_integral(double r) const {
   const double q = r * inverse_cutoff_;
   if (!(q < 1)) return 1;

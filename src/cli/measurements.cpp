@@ -24,10 +24,12 @@ Json describe(const MeasurementInfo& info) {
     options.push_back(describe_option(option));
   }
   const MeasurementNeeds needs = info.needs(defaults);
-  return {
-      {"name", info.name},         {"description", info.description},
-      {"equation", info.equation}, {"reads", needs.particles ? Json(column_names(*needs.particles)) : Json::array()},
-      {"fields", needs.fields},    {"options", options}};
+  return {{"name", info.name},
+          {"description", info.description},
+          {"equation", info.equation},
+          {"reads", needs.particles ? Json(column_names(*needs.particles)) : Json::array()},
+          {"fields", needs.planes ? needs.planes->fields : needs.fields},
+          {"options", options}};
 }
 
 void print_measurement(const Json& measurement) {

@@ -154,7 +154,7 @@ void run_at_scales(const Pipeline& pipeline, const RunOptions& options) {
                        {},
                        "one scale, or neither --resume nor --follow",
                        {}});
-  if (measured_columns(pipeline))
+  if (measured_columns(pipeline) || measures_planes(pipeline))
     throw ConfigError({pipeline.location("measure"),
                        "frames are not measured at several scales",
                        "both scales and measurements of frames",

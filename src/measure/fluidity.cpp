@@ -50,7 +50,7 @@ class FluidityMeasurement : public Measurement {
         error_floor_(number_option(setting.options, "error_floor")),
         compare_(std::get<std::string>(setting.options.at("compare"))),
         c_(held_c(number_option(setting.options, "c"), compare_)),
-        samples_(make_samples(setting, sample_fields(spin_), spin_ ? 4 : 2, quantities(spin_))) {}
+        samples_(make_samples(setting, spin_, spin_ ? 4 : 2, quantities(spin_))) {}
 
   void take(const OutputFields& output) override { samples_->take(output); }
 
@@ -194,8 +194,14 @@ MeasurementInfo fluidity_fit() {
   info.description = "g d/dv against packing fraction, with the law (3) and a fit of (A20)";
   info.equation = "F(phi) = A - [(phi-B) + sqrt((phi-B)^2+C)]/D  (A20)";
   info.options = options();
-  info.conflict = bin_conflict;
-  info.needs = [](const OptionValues& values) { return MeasurementNeeds{{}, sample_fields(with_spin(values))}; };
+  info.conflict = [](const OptionValues& values) -> std::optional<OptionConflict> {
+    if (with_spin(values) && !std::get<std::string>(values.at("species")).empty())
+      return OptionConflict{"spin", "true with a species", "false: spin fluctuations are those of all grains"};
+    return sample_conflict(values);
+  };
+  info.needs = [](const OptionValues& values) {
+    return sample_needs(values, sample_fields(values, with_spin(values)));
+  };
   info.make = [](const MeasurementSetting& setting) { return std::make_unique<FluidityMeasurement>(setting); };
   return info;
 }

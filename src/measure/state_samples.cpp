@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "measure/option_values.hpp"
+
 namespace grainvdb {
 namespace {
 
@@ -19,10 +21,32 @@ struct TemperatureFloor {
   }
 };
 
+/// Which fields a state is made of: mean diameter and temperature are those of a species, where one is named; the flow
+/// is that of all grains.
+class StateFields {
+ public:
+  explicit StateFields(const OptionValues& options) : species_(std::get<std::string>(options.at("species"))) {}
+
+  std::string operator()(const std::string& field) const {
+    return !species_.empty() && is_of_grains(field) ? field + '_' + species_ : field;
+  }
+  bool are_of_species() const { return !species_.empty(); }
+
+ private:
+  static bool is_of_grains(const std::string& field) { return field == "mean_diameter" || field == "temperature"; }
+
+  std::string species_;
+};
+
 class ProfileSamples : public StateSamples {
  public:
-  ProfileSamples(FieldProfile profile, TemperatureFloor floor, std::size_t quantities, StateQuantities f)
-      : profile_(std::move(profile)), floor_(floor), quantities_(quantities), f_(std::move(f)) {}
+  ProfileSamples(FieldProfile profile, StateFields fields, TemperatureFloor floor, std::size_t quantities,
+                 StateQuantities f)
+      : profile_(std::move(profile)),
+        fields_(std::move(fields)),
+        floor_(floor),
+        quantities_(quantities),
+        f_(std::move(f)) {}
 
   void take(const OutputFields& output) override { profile_.take(output); }
   std::size_t times() const override { return profile_.times(); }
@@ -33,7 +57,8 @@ class ProfileSamples : public StateSamples {
       const FieldProfile::Means place(profile_, bin);
       StateSample sample{place.position(), place.height(), {}};
       sample.values = profile_.estimate(bin, quantities_, [&](const FieldProfile::Means& means, std::span<double> out) {
-        FlowState state = means.state();
+        FlowState state =
+            flow_state([&](const char* field, int component = 0) { return means.value(fields_(field), component); });
         floor_.set(state);
         f_(state, out);
       });
@@ -44,6 +69,7 @@ class ProfileSamples : public StateSamples {
 
  private:
   FieldProfile profile_;
+  StateFields fields_;
   TemperatureFloor floor_;
   std::size_t quantities_;
   StateQuantities f_;
@@ -51,9 +77,9 @@ class ProfileSamples : public StateSamples {
 
 class VoxelSamples : public StateSamples {
  public:
-  VoxelSamples(const BinSpec& spec, const Lattice& lattice, TemperatureFloor floor, std::size_t quantities,
-               StateQuantities f)
-      : bins_(spec, lattice), floor_(floor), quantities_(quantities), f_(std::move(f)) {}
+  VoxelSamples(const BinSpec& spec, const Lattice& lattice, StateFields fields, TemperatureFloor floor,
+               std::size_t quantities, StateQuantities f)
+      : bins_(spec, lattice), fields_(std::move(fields)), floor_(floor), quantities_(quantities), f_(std::move(f)) {}
 
   void take(const OutputFields& output) override {
     if (output.time.frame_count == 0) return;
@@ -73,9 +99,9 @@ class VoxelSamples : public StateSamples {
   std::vector<StateSample> samples() const override { return samples_; }
 
  private:
-  static FlowState state_at(const OutputFields& output, const VoxelPlace& place) {
+  FlowState state_at(const OutputFields& output, const VoxelPlace& place) const {
     const auto value = [&](const char* name, int component = 0) {
-      const auto field = output.fields.find(name);
+      const auto field = output.fields.find(fields_(name));
       if (field == output.fields.end()) return FlowState::unknown;
       return static_cast<double>(field->second.leaf(place.leaf, component)[place.offset]);
     };
@@ -83,6 +109,7 @@ class VoxelSamples : public StateSamples {
   }
 
   Bins bins_;
+  StateFields fields_;
   TemperatureFloor floor_;
   std::size_t quantities_;
   StateQuantities f_;
@@ -90,33 +117,76 @@ class VoxelSamples : public StateSamples {
   std::vector<StateSample> samples_;
 };
 
+bool is_from_planes(const OptionValues& options) {
+  return std::get<std::string>(options.at("source")) == "planes";
+}
+
 }  // namespace
 
 std::vector<OptionInfo> sample_options() {
   std::vector<OptionInfo> options{{.name = "source",
                                    .default_value = std::string("profile"),
-                                   .help = "profile: averages over planes or shells; voxels: each by itself, those of "
-                                           "all output times",
-                                   .choices = {"profile", "voxels"}}};
+                                   .help =
+                                       "profile: averages over planes or shells; planes: exact averages over "
+                                       "planes, as plane_profile; voxels: each by itself, those of all output times",
+                                   .choices = {"profile", "planes", "voxels"}}};
   for (OptionInfo& option : bin_options()) options.push_back(std::move(option));
+  options.push_back(plane_area_option());
+  options.push_back({.name = "species",
+                     .default_value = std::string(),
+                     .help =
+                         "whose mean diameter and temperature are taken, beside stress, rate and phi of all grains; "
+                         "empty: all grains"});
   return options;
 }
 
-std::vector<std::string> sample_fields(bool spin) {
-  std::vector<std::string> fields = flow_fields();
+std::optional<OptionConflict> sample_conflict(const OptionValues& options) {
+  if (auto conflict = bin_conflict(options)) return conflict;
+  if (!is_from_planes(options)) return std::nullopt;
+  const BinSpec spec = bin_spec(options);
+  if (spec.geometry == BinSpec::Geometry::shells)
+    return OptionConflict{"geometry", "'shells' with source 'planes'", "'planes', or source: profile"};
+  if (spec.points > 0)
+    return OptionConflict{"points", std::to_string(spec.points) + " with source 'planes'",
+                          "0: exact averages are over whole planes"};
+  return std::nullopt;
+}
+
+MeasurementNeeds sample_needs(const OptionValues& options, std::vector<std::string> fields) {
+  if (is_from_planes(options)) return {.planes = plane_needs(options, std::move(fields))};
+  return {.fields = std::move(fields)};
+}
+
+OptionInfo plane_area_option() {
+  return {.name = "area",
+          .default_value = 0.0,
+          .help = "of a plane, for exact averages [length^2]; 0: that of the box, periodic along both axes",
+          .minimum = 0};
+}
+
+PlaneNeeds plane_needs(const OptionValues& options, std::vector<std::string> fields) {
+  return {{axis_option(options, "axis"), number_option(options, "area")}, std::move(fields)};
+}
+
+std::vector<std::string> sample_fields(const OptionValues& options, bool spin) {
+  const StateFields of_state(options);
+  std::vector<std::string> fields;
+  for (const std::string& field : flow_fields()) fields.push_back(of_state(field));
+  if (of_state.are_of_species()) fields.push_back(volume_weight(of_state("temperature")));
   if (spin) fields.push_back("rotational_fluctuation");
   return fields;
 }
 
-std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, std::vector<std::string> fields,
-                                           std::size_t quantities, StateQuantities f) {
+std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, bool spin, std::size_t quantities,
+                                           StateQuantities f) {
   const TemperatureFloor floor{option<double>(setting.stages, "gd_over_dv", "temperature_min"),
                                option<double>(setting.stages, "velocity", "resolution")};
   const BinSpec spec = bin_spec(setting.options);
+  const StateFields fields(setting.options);
   if (std::get<std::string>(setting.options.at("source")) == "voxels")
-    return std::make_unique<VoxelSamples>(spec, setting.lattice, floor, quantities, std::move(f));
-  return std::make_unique<ProfileSamples>(FieldProfile(spec, setting.lattice, std::move(fields)), floor, quantities,
-                                          std::move(f));
+    return std::make_unique<VoxelSamples>(spec, setting.lattice, fields, floor, quantities, std::move(f));
+  return std::make_unique<ProfileSamples>(FieldProfile(spec, setting.lattice, sample_fields(setting.options, spin)),
+                                          fields, floor, quantities, std::move(f));
 }
 
 std::vector<double> fit_errors(const std::vector<StateSample>& samples, std::size_t index, double floor) {

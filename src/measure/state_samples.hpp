@@ -1,5 +1,5 @@
 #pragma once
-/// Quantities of the flow at many places: averaged over planes or shells, or voxel by voxel.
+/// Quantities of the flow at many places: averaged over planes or shells, exactly over planes, or voxel by voxel.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -35,16 +35,26 @@ class StateSamples {
   virtual std::size_t times() const = 0;
 };
 
-/// bin_options() and `source`: profile or voxels.
+/// bin_options(), `source`: profile, planes or voxels, the area of the planes, and the species whose grains are looked
+/// at.
 std::vector<OptionInfo> sample_options();
+/// Refuses what bin_conflict does, and options that the source does not know.
+std::optional<OptionConflict> sample_conflict(const OptionValues& options);
 
-/// What the samples need of the fields; with rotational_fluctuation where `spin` is set.
-std::vector<std::string> sample_fields(bool spin);
+/// These fields, from the source that the options say.
+MeasurementNeeds sample_needs(const OptionValues& options, std::vector<std::string> fields);
 
-/// Samples as the options say. Ratios are not formed where the fields of a voxel would not be: up to pressure_floor,
-/// and up to gd_over_dv.temperature_min or the resolution of velocities.
-std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, std::vector<std::string> fields,
-                                           std::size_t quantities, StateQuantities f);
+/// The area of the planes that exact averages are over, and what is needed for these fields.
+OptionInfo plane_area_option();
+PlaneNeeds plane_needs(const OptionValues& options, std::vector<std::string> fields);
+
+/// The fields that samples by these options are made of; with rotational_fluctuation where `spin` is set.
+std::vector<std::string> sample_fields(const OptionValues& options, bool spin);
+
+/// Samples as the options say, of sample_fields. Ratios are not formed where the fields of a voxel would not be: up to
+/// pressure_floor, and up to gd_over_dv.temperature_min or the resolution of velocities.
+std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, bool spin, std::size_t quantities,
+                                           StateQuantities f);
 
 /// The errors to weigh value `index` of the samples by in a fit, √(s² + (floor y)²); empty, for equal weights, where
 /// any is NaN or 0. The floor keeps an error that came out small by chance from deciding the fit.

@@ -8,6 +8,7 @@
 #include "measure/field_profile.hpp"
 #include "measure/option_values.hpp"
 #include "measure/register.hpp"
+#include "measure/state_samples.hpp"
 
 namespace grainvdb {
 namespace {
@@ -163,14 +164,21 @@ MeasurementInfo stationarity() {
        .default_value = 0.0,
        .help = "voxel centres below are left out [length]; no bounds where from and to are 0"},
       {.name = "to", .default_value = 0.0, .help = "voxel centres from here on are left out [length]"},
-      {.name = "gravity", .default_value = 0.0, .help = "acceleration against the axis, 0 for none [length/time^2]"}};
+      {.name = "gravity", .default_value = 0.0, .help = "acceleration against the axis, 0 for none [length/time^2]"},
+      {.name = "source",
+       .default_value = std::string("profile"),
+       .help = "profile: averages over the voxels of planes; planes: exact averages over planes, as plane_profile",
+       .choices = {"profile", "planes"}},
+      plane_area_option()};
   info.conflict = [](const OptionValues& options) -> std::optional<OptionConflict> {
     if (axis_option(options, "axis") == axis_option(options, "flow"))
       return OptionConflict{"flow", std::get<std::string>(options.at("flow")), "another direction than the axis"};
     return height_conflict(options);
   };
-  info.needs = [](const OptionValues&) {
-    return MeasurementNeeds{Column::velocity | Column::mass, {"stress", "density"}};
+  info.needs = [](const OptionValues& options) {
+    MeasurementNeeds needs = sample_needs(options, {"stress", "density"});
+    needs.particles = Column::velocity | Column::mass;
+    return needs;
   };
   info.make = [](const MeasurementSetting& setting) { return std::make_unique<StationarityMeasurement>(setting); };
   return info;

@@ -8,6 +8,8 @@
 #include "pipeline/frame_checks.hpp"
 #include "pipeline/material.hpp"
 #include "pipeline/measure_needs.hpp"
+#include "pipeline/plane_runs.hpp"
+#include "pipeline/plane_splat.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/spot_input.hpp"
 #include "pipeline/wall_domain.hpp"
@@ -24,7 +26,7 @@ std::string text(double x) {
 
 void check_plan(const Pipeline& pipeline, const Plan& plan) {
   if (plan.means.empty())
-    throw ConfigError({pipeline.location("output.fields"),
+    throw ConfigError({pipeline.location(key_of_fields(pipeline)),
                        "nothing to compute: no field that is made from particles is wanted",
                        {},
                        "at least one field besides mask",
@@ -32,16 +34,16 @@ void check_plan(const Pipeline& pipeline, const Plan& plan) {
   const bool contacts = std::any_of(plan.sweeps.begin(), plan.sweeps.end(),
                                     [](const Sweep& s) { return s.columns.has(Column::contacts); });
   if (contacts && pipeline.input.contacts.files.empty())
-    throw ConfigError({pipeline.location("output.fields"), "the wanted fields need contacts, and the input has none",
-                       "no input.contacts", "input.contacts.files",
-                       "Name the contact dumps, or ask for kinetic_stress instead of stress"});
+    throw ConfigError({pipeline.location(key_of_fields(pipeline)),
+                       "the wanted fields need contacts, and the input has none", "no input.contacts",
+                       "input.contacts.files", "Name the contact dumps, or ask for kinetic_stress instead of stress"});
 }
 
 void check_wall_grains(const Pipeline& pipeline, const Plan& plan) {
   if (!tells_walls(all_branch_kinds(plan)) || !pipeline.walls.types.empty() || !pipeline.select.empty() ||
       !pipeline.input.wall_contacts.files.empty())
     return;
-  throw ConfigError({pipeline.location("output.fields"),
+  throw ConfigError({pipeline.location(key_of_fields(pipeline)),
                      "the wanted fields tell wall grains from material, and nothing says which are which",
                      "neither walls.types nor select",
                      "walls.types: the types of the wall grains; or select, which leaves them out",
@@ -65,7 +67,8 @@ void check_periodic_box(const Pipeline& pipeline, const FrameInfo& first, const 
                         text(frame.box.length(a)) + " at step " + std::to_string(frame.step),
                         text(length) + " as at step " + std::to_string(first.step),
                         "Fields of a deforming periodic box have no common lattice: choose frames of one size"});
-    if (pipeline.cutoff > 0.5 * length)
+    const bool across_planes = !pipeline.planes || pipeline.planes->axis == a;
+    if (across_planes && pipeline.cutoff > 0.5 * length)
       throw ConfigError({pipeline.location("kernel.cutoff"), "the cutoff exceeds half the periodic box along " + axis,
                          text(pipeline.cutoff), "at most " + text(0.5 * length),
                          "A particle would meet its own image"});
@@ -122,7 +125,8 @@ Lattice lattice_in(const Pipeline& pipeline, const FrameSource& source, const st
   for (std::size_t k : wanted) check_periodic_box(pipeline, first, frames[k]);
   Lattice lattice(pipeline.voxel, pipeline.origin);
   try {
-    lattice.set_periods(first.box);
+    lattice.set_periods(pipeline.planes ? box_of_planes(*pipeline.planes, first.box, pipeline.voxel, pipeline.origin)
+                                        : first.box);
   } catch (const std::invalid_argument& e) {
     throw ConfigError({pipeline.location("lattice.voxel"), e.what(), {}, {}, {}});
   }
@@ -158,6 +162,10 @@ Lattice check_measure_against_input(const Pipeline& pipeline, FrameSource& sourc
       throw ConfigError({pipeline.location("measure"), "the wanted measurements need contacts, and the input has none",
                          "no input.contacts", "input.contacts.files", "Name the contact dumps"});
     require_columns(pipeline, *columns, source, wanted);
+  }
+  for (PlaneRun& run : plane_runs(pipeline)) {
+    set_area(*run.pipeline.planes, source.frames()[wanted.front()]);
+    check_against_input(run.pipeline, run.plan, source);
   }
   return pipeline.voxel > 0 ? lattice_in(pipeline, source, wanted) : Lattice(1, {});
 }

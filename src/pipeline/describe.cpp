@@ -144,6 +144,11 @@ std::string trace_text(const TraceSpec& trace) {
   return text + ", as " + joined(trace.formats, "nothing") + '\n';
 }
 
+std::string planes_text(const PlaneNeeds& needs) {
+  return "exact averages over planes normal to " + std::string(1, "xyz"[needs.planes.axis]) + " of " +
+         joined(needs.fields, "");
+}
+
 std::string measure_text(const Pipeline& pipeline) {
   std::string text;
   for (const auto& [name, options] : pipeline.measure) {
@@ -153,6 +158,7 @@ std::string measure_text(const Pipeline& pipeline) {
     if (needs.particles) text += joined(column_names(*needs.particles), "") + " of every frame";
     if (needs.particles && !needs.fields.empty()) text += " and ";
     if (!needs.fields.empty()) text += joined(needs.fields, "");
+    if (needs.planes) text += (needs.particles ? " and " : "") + planes_text(*needs.planes);
     text += '\n';
   }
   return text;

@@ -45,6 +45,7 @@ std::vector<double> values_of(const SplatGroup& group, const FrameView& view) {
 FrameContext::FrameContext(std::shared_ptr<const Material> material, const SplatSetting& setting,
                            const SweepGroups& groups)
     : material_(std::move(material)), setting_(setting), groups_(groups) {
+  if (const auto& planes = setting_.pipeline.planes) planes_.emplace(setting_.lattice, setting_.kernel, *planes);
   check_extents(*material_, setting_.lattice, setting_.pipeline);
   if (setting_.wanted.empty()) check_spread(*material_, setting_.lattice, setting_.pipeline);
 }
@@ -88,11 +89,12 @@ void FrameContext::bucket_particles() {
 }
 
 const std::shared_ptr<const Topology>& FrameContext::particle_leaves(const Halo& halo) {
-  bucket_particles();
   const Region* const wanted = setting_.wanted_leaves(halo);
   auto& topology = topologies_[wanted];
-  if (!topology) topology = particle_topology(setting_.lattice, setting_.kernel, *buckets_, wanted);
-  return topology;
+  if (topology) return topology;
+  if (planes_) return topology = planes_->topology(particles());
+  bucket_particles();
+  return topology = particle_topology(setting_.lattice, setting_.kernel, *buckets_, wanted);
 }
 
 const std::shared_ptr<const Topology>& FrameContext::contact_leaves(const SplatGroup& group) {
@@ -100,6 +102,7 @@ const std::shared_ptr<const Topology>& FrameContext::contact_leaves(const SplatG
   auto& topology = contact_topologies_[{group.branch_kind(), wanted}];
   if (topology) return topology;
   const HalfBranches& all = branches(group.branch_kind());
+  if (planes_) return topology = planes_->topology(all);
   const std::vector<double> any(all.size());  // the voxels do not depend on the values
   const LineIntegral method = group.moments[0]->line_integral;
   topology = ContactSplat(setting_.lattice, setting_.kernel, all, any, 1, method, wanted).topology();
@@ -130,6 +133,10 @@ FrameContext::Started FrameContext::start(const SplatGroup& group, std::size_t b
 void FrameContext::start_contacts(const SplatGroup& group, Started& started) {
   const Region* const wanted = setting_.wanted_leaves(group.halo);
   started.values = values_of(group, *this);
+  if (planes_) {
+    started.topology = contact_leaves(group);
+    return;
+  }
   started.contacts =
       std::make_unique<ContactSplat>(setting_.lattice, setting_.kernel, branches(group.branch_kind()), started.values,
                                      group.value_count(), group.moments[0]->line_integral, wanted);
@@ -143,6 +150,7 @@ void FrameContext::start_contacts_of_species(const SplatGroup& group, Started& s
   started.branches = std::make_shared<const HalfBranches>(branches_of_species(branches(group.branch_kind()), species));
   started.values = values_of(group, SpeciesView(*this, species, started.branches));
   started.topology = contact_leaves(group);
+  if (planes_) return;
   started.contacts = std::make_unique<ContactSplat>(
       setting_.lattice, setting_.kernel, *started.branches, started.values, group.value_count(),
       group.moments[0]->line_integral, setting_.wanted_leaves(group.halo), started.topology);
@@ -151,12 +159,28 @@ void FrameContext::start_contacts_of_species(const SplatGroup& group, Started& s
 void FrameContext::splat(const SplatGroup& group, const Started& started, std::size_t bytes_per_leaf,
                          WindowSums& sums) {
   check(started.topology->leaf_count(), group, bytes_per_leaf, sums.leaf_count());
-  if (started.contacts) {
+  if (planes_) {
+    splat_on_planes(group, started, sums);
+  } else if (started.contacts) {
     started.contacts->sums(consumer(group, started.topology, sums));
   } else if (group.species()) {
     splat_particles(group, started, keep_points(*buckets_, particles().species, *group.species()), sums);
   } else {
     splat_particles(group, started, *buckets_, sums);
+  }
+}
+
+void FrameContext::splat_on_planes(const SplatGroup& group, const Started& started, WindowSums& sums) {
+  const auto splat = [&](const auto& entries) {
+    keep(planes_->splat(group, entries, started.values, started.topology),
+         {group.moments.begin(), group.moments.begin() + static_cast<std::ptrdiff_t>(group.asked_for)}, sums);
+  };
+  if (group.kind() == Moment::Kind::contacts) {
+    splat(started.branches ? *started.branches : branches(group.branch_kind()));
+  } else if (group.species()) {
+    splat(particles_of_species(particles(), *group.species()));
+  } else {
+    splat(particles());
   }
 }
 

@@ -21,6 +21,7 @@
 #include "grainvdb/region.hpp"
 #include "pipeline/frame_checks.hpp"
 #include "pipeline/material.hpp"
+#include "pipeline/plane_splat.hpp"
 #include "pipeline/splat_groups.hpp"
 #include "splat/leaf_consumer.hpp"
 #include "splat/sample.hpp"
@@ -92,6 +93,7 @@ class FrameContext : public FrameView {
   void bucket_particles();
   const std::shared_ptr<const Topology>& particle_leaves(const Halo& halo);
   const std::shared_ptr<const Topology>& contact_leaves(const SplatGroup& group);
+  void splat_on_planes(const SplatGroup& group, const Started& started, WindowSums& sums);
   void splat_particles(const SplatGroup& group, const Started& started, const Buckets& buckets, WindowSums& sums);
   void splat(const SplatGroup& group, const Started& started, std::size_t bytes_per_leaf, WindowSums& sums);
   /// What takes the sums of a group's leaves: the sums of the window, and a buffer for the moments that are kept.
@@ -106,6 +108,7 @@ class FrameContext : public FrameView {
   const SplatSetting& setting_;
   const SweepGroups& groups_;
   const MomentMeans* means_ = nullptr;
+  std::optional<PlaneSplat> planes_;  // where fields are averages over them
   std::optional<Buckets> buckets_;
   std::map<const Region*, std::shared_ptr<const Topology>> topologies_;  // of the particles
   std::map<std::pair<BranchKind, const Region*>, std::shared_ptr<const Topology>> contact_topologies_;

@@ -124,6 +124,10 @@ void check_together(const Pipeline& p, const Schema& schema) {
 
 }  // namespace
 
+std::string key_of_fields(const Pipeline& pipeline) {
+  return pipeline.planes ? "measure" : "output.fields";
+}
+
 std::vector<std::string> computed_fields(const Pipeline& pipeline) {
   std::vector<std::string> all = pipeline.fields;
   const auto need = [&](const std::string& name) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bin/half_step.hpp"
+#include "pipeline/plane_runs.hpp"
 
 namespace grainvdb {
 namespace {
@@ -28,15 +29,19 @@ std::optional<ColumnSet> measured_columns(const Pipeline& pipeline) {
 }
 
 ColumnSet columns_read(const Plan& plan, const Pipeline& pipeline) {
-  return all_columns(plan) | measured_columns(pipeline).value_or(ColumnSet());
+  return all_columns(plan) | measured_columns(pipeline).value_or(ColumnSet()) | plane_columns(pipeline);
 }
 
 bool measures_fields(const Pipeline& pipeline) {
   return any_needs(pipeline, [](const MeasurementNeeds& needs) { return !needs.fields.empty(); });
 }
 
+bool measures_planes(const Pipeline& pipeline) {
+  return any_needs(pipeline, [](const MeasurementNeeds& needs) { return needs.planes.has_value(); });
+}
+
 bool measures_with_kernel(const Pipeline& pipeline) {
-  return any_needs(pipeline, [](const MeasurementNeeds& needs) { return needs.kernel; });
+  return any_needs(pipeline, [](const MeasurementNeeds& needs) { return needs.kernel || needs.planes; });
 }
 
 }  // namespace grainvdb

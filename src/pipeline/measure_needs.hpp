@@ -18,6 +18,9 @@ ColumnSet columns_read(const Plan& plan, const Pipeline& pipeline);
 /// Whether one of them needs fields.
 bool measures_fields(const Pipeline& pipeline);
 
+/// Whether one of them needs exact averages over planes.
+bool measures_planes(const Pipeline& pipeline);
+
 /// Whether one of them needs the lattice and the kernel, though it may need no field.
 bool measures_with_kernel(const Pipeline& pipeline);
 

@@ -8,6 +8,7 @@
 
 #include "base/ordered_pipeline.hpp"
 #include "grainvdb/memory_model.hpp"
+#include "pipeline/good_frames.hpp"
 #include "pipeline/material.hpp"
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/output_units.hpp"
@@ -31,8 +32,9 @@ std::vector<std::size_t> up_to_stop(std::vector<std::size_t> frames, const RunRe
 
 void add_bad_frames(const std::vector<BadFrame>& more, RunReport& report) {
   for (const BadFrame& frame : more)
-    if (std::none_of(report.bad_frames.begin(), report.bad_frames.end(),
-                     [&](const BadFrame& known) { return to_string(known) == to_string(frame); }))
+    if (std::none_of(report.bad_frames.begin(), report.bad_frames.end(), [&](const BadFrame& known) {
+          return frame.step ? known.step == frame.step : to_string(known) == to_string(frame);
+        }))
       report.bad_frames.push_back(frame);
 }
 
@@ -43,7 +45,8 @@ MeasurePass::MeasurePass(const Pipeline& pipeline, const Plan& plan, FrameSource
       plan_(plan),
       source_(source),
       wanted_(select_frames(pipeline.frames, source.frames().size())),
-      lattice_(check_measure_against_input(pipeline, source)) {
+      lattice_(check_measure_against_input(pipeline, source)),
+      plane_runs_(plane_runs(pipeline)) {
   for (const MeasurementInfo& info : measurement_registry()) {
     const auto it = pipeline.measure.find(info.name);
     if (it == pipeline.measure.end()) continue;
@@ -53,7 +56,7 @@ MeasurePass::MeasurePass(const Pipeline& pipeline, const Plan& plan, FrameSource
                                      LucyKernel(pipeline.cutoff > 0 ? pipeline.cutoff : 1),
                                      source.frames()[wanted_.front()].box,
                                      pipeline.input.density};
-    entries_.push_back({info.needs(it->second), info.make(setting)});
+    entries_.push_back({info.name, info.needs(it->second), info.make(setting)});
   }
 }
 
@@ -76,6 +79,30 @@ void MeasurePass::measure(const Frame& frame) {
 }
 
 void MeasurePass::visit_frames(const RunReport& report, const std::function<void(const Progress&)>& progress) {
+  visit_single_frames(report, progress);
+  for (PlaneRun& run : plane_runs_) visit_planes(run, report, progress);
+}
+
+/// As many frames as there are in the averages, where these ended before the last.
+void MeasurePass::visit_planes(PlaneRun& run, const RunReport& report,
+                               const std::function<void(const Progress&)>& progress) {
+  set_area(*run.pipeline.planes, source_.frames()[wanted_.front()]);
+  if (report.stop) run.pipeline.frames.stop = static_cast<std::int64_t>(wanted_[report.stop->frames - 1]) + 1;
+  const auto take = [&](const OutputFields& output) {
+    clock_.time("measure", [&] {
+      for (const Entry& entry : entries_)
+        if (std::find(run.measurements.begin(), run.measurements.end(), entry.name) != run.measurements.end())
+          entry.measurement->take(output);
+    });
+  };
+  GoodFrames source(source_, report.bad_frames);
+  const RunReport on_planes = compute_fields(run.pipeline, run.plan, source, take, progress);
+  measured_ = std::max(measured_, on_planes.frames);
+  for (const auto& [step, seconds] : on_planes.seconds) seconds_on_planes_.emplace_back(step + " on planes", seconds);
+  bad_on_planes_.insert(bad_on_planes_.end(), on_planes.bad_frames.begin(), on_planes.bad_frames.end());
+}
+
+void MeasurePass::visit_single_frames(const RunReport& report, const std::function<void(const Progress&)>& progress) {
   const auto columns = measured_columns(pipeline_);
   if (!columns) return;
   const std::vector<std::size_t> frames = without_bad(up_to_stop(wanted_, report), source_, report.bad_frames);
@@ -116,9 +143,11 @@ void MeasurePass::commit(RunReport& report) {
   const OutputUnits units(source_.units(), pipeline_.reduced);
   for (Table& table : report.tables) units.convert(table);
   add_bad_frames(bad_.list(source_), report);
+  add_bad_frames(bad_on_planes_, report);
   report.tables_from = provenance_of(pipeline_, plan_, source_, up_to_stop(wanted_, report), report);
   report.frames = std::max(report.frames, measured_);
   report.seconds.insert(report.seconds.end(), clock_.seconds().begin(), clock_.seconds().end());
+  report.seconds.insert(report.seconds.end(), seconds_on_planes_.begin(), seconds_on_planes_.end());
   report.wall_seconds = std::max(report.wall_seconds, clock_.passed());
   report.read = source_.counters();
 }

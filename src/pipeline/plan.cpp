@@ -21,7 +21,8 @@ namespace {
 // first.
 class StageOrder {
  public:
-  StageOrder(const Pipeline& pipeline, const StageRegistry& registry) : pipeline_(pipeline), registry_(registry) {
+  StageOrder(const Pipeline& pipeline, const StageRegistry& registry)
+      : pipeline_(pipeline), registry_(registry), asks_(key_of_fields(pipeline)) {
     for (const std::string& field : pipeline.fields) visit(field, asks_);
     asks_ = pipeline.trace ? "trace" : "measure";
     for (const std::string& field : computed_fields(pipeline)) visit(field, asks_);
@@ -84,7 +85,7 @@ class StageOrder {
 
   const Pipeline& pipeline_;
   const StageRegistry& registry_;
-  std::string asks_ = "output.fields";  // the key that wants fields now
+  std::string asks_;  // the key that wants fields now
   std::vector<std::string> path_;
   std::map<std::string, StageNeeds> needs_;
 };

@@ -54,7 +54,7 @@ void refuse_forces_of_spots(const Pipeline& pipeline, const Plan& plan, const Fr
             "time between two",
         source, "Leave these out; phi, velocity and shear_rate are there, and all of the packing");
   };
-  refuse_among(pipeline.fields, "output.fields");
+  refuse_among(pipeline.fields, key_of_fields(pipeline));
   for (const auto& [name, options] : pipeline.measure)
     refuse_among(find_measurement(name)->needs(options).fields, "measure." + name);
   if (pipeline.trace) refuse_among(pipeline.trace->record, "trace.record");

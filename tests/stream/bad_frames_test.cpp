@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "grainvdb/measurement.hpp"
 #include "stream/same_fields.hpp"
 #include "support/memory_source.hpp"
 #include "support/memory_tracers.hpp"
@@ -84,6 +85,26 @@ TEST_F(SkippedFrames, AreInNoSumOfAnySweep) {
   EXPECT_EQ(result.report.bad_frames[0].step, 20);
   EXPECT_EQ(result.report.bad_frames[1].step, 60);
   EXPECT_THAT(result.report.bad_frames[0].reason, HasSubstr("frame2:7: a bad row"));
+}
+
+// Averages over planes, which read less, must be of the frames that the fields are of.
+TEST_F(SkippedFrames, AreInNoAverageOverPlanes) {
+  Pipeline p = skipping({"contact_stress"});
+  for (const OptionInfo& option : find_measurement("plane_profile")->options)
+    p.measure["plane_profile"][option.name] = option.default_value;
+  FaultySource faulty(frames_, {{20, Column::contacts}, {40, Column::mass}});
+  const Result result = run(p, faulty);
+  MemorySource good(without(frames_, {20, 40}));
+  const Result expected = run(p, good);
+  ASSERT_THAT(result.report.tables, SizeIs(1));
+  const std::vector<TableColumn>&found = result.report.tables[0].columns, &wanted = expected.report.tables[0].columns;
+  ASSERT_EQ(found.size(), wanted.size());
+  for (std::size_t c = 0; c < found.size(); ++c) {
+    if (found[c].name.ends_with("_error")) continue;  // of seven output times, two of them empty
+    EXPECT_EQ(found[c].values, wanted[c].values) << found[c].name;
+  }
+  ASSERT_THAT(result.report.bad_frames, SizeIs(2));  // of which the second is bad for density alone
+  EXPECT_THAT(result.report.bad_frames[0].reason, HasSubstr("a bad row"));
 }
 
 // A block that loses all its frames does not count; seven frames in five blocks are 1, 1, 2, 1, 2.
