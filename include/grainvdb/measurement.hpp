@@ -15,6 +15,7 @@
 #include "grainvdb/stage.hpp"
 #include "grainvdb/table.hpp"
 #include "grainvdb/units.hpp"
+#include "grainvdb/walls.hpp"
 
 namespace grainvdb {
 
@@ -35,6 +36,7 @@ struct MeasurementSetting {
   LucyKernel kernel;
   Box box;                              ///< of the first frame [length]
   std::optional<double> grain_density;  ///< where the pipeline file says it [mass/length³]
+  WallDomain walls{};                   ///< of the pipeline file
 };
 
 class Measurement {

@@ -159,6 +159,7 @@ Lattice check_measure_against_input(const Pipeline& pipeline, FrameSource& sourc
                          "no input.contacts", "input.contacts.files", "Name the contact dumps"});
     require_columns(pipeline, *columns, source, wanted);
   }
+  wall_domain(pipeline, source, wanted);
   return pipeline.voxel > 0 ? lattice_in(pipeline, source, wanted) : Lattice(1, {});
 }
 
