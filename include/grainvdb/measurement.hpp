@@ -16,6 +16,7 @@
 #include "grainvdb/stage.hpp"
 #include "grainvdb/table.hpp"
 #include "grainvdb/units.hpp"
+#include "grainvdb/walls.hpp"
 
 namespace grainvdb {
 
@@ -45,6 +46,7 @@ struct MeasurementSetting {
   LucyKernel kernel;
   Box box;                              ///< of the first frame [length]
   std::optional<double> grain_density;  ///< where the pipeline file says it [mass/length³]
+  WallDomain walls{};                   ///< of the pipeline file
 };
 
 class Measurement {

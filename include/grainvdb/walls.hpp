@@ -25,6 +25,17 @@ struct Wall {
   bool operator==(const Wall&) const = default;
 };
 
+/// The points y with normal·y ≥ offset.
+struct HalfSpace {
+  Vec3 normal{};      ///< of unit length
+  double offset = 0;  ///< [length]
+};
+
+/// That on the material's side of the plane that touches a wall where it is nearest to x. It holds all of the material
+/// at a plane and within a cylinder or a cone, and part of it around them. The direction of the wall must be of unit
+/// length, as those of WallDomain are.
+HalfSpace half_space_at(const Wall& wall, const Vec3& x);
+
 /// A face of the simulation box as a wall: axis 0 … 2, at hi or lo.
 struct BoxFace {
   int axis = 0;

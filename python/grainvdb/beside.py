@@ -13,12 +13,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 
-from . import compare, plots
+from . import compare, flowlines, lawplots, plots
 from .arrays import Array
 from .compare import Result, Results
 from .fields import AXES, Fields
-from .page import (FIELDS_FIRST, PROFILES_FIRST, Draw, Page, html_table, number, ordered, panels, provenance,
-                   with_error, write)
+from .page import (FIELDS_FIRST, PROFILES_FIRST, Draw, Page, html_table, number, ordered, panels, plane_size,
+                   provenance, with_error, write)
 from .tables import Table
 from .tracers import Tracers
 
@@ -107,12 +107,6 @@ def _velocity(page: Page, results: Mapping[str, Fields], along: str, cut: str) -
                                                f"The component of the velocity along {along} against {across} at heights {along}, averaged over {cut}."))
 
 
-def _grid(draw: Sequence[Draw], columns: int, sides: Sequence[tuple[float, float]]) -> plt.Figure:
-    """Pictures of one plane, a row for each quantity, in the shape of the plane."""
-    across, up = (high - low for low, high in sides)
-    return panels(draw, columns, (4.2, float(np.clip(3.2 * up / across, 1.6, 7)) + 0.7))
-
-
 def _spans(ends: Sequence[tuple[Array, Array]], margin: float) -> list[tuple[float, float]]:
     """From the least to the greatest place along both axes of a plane, in any of the results."""
     return [(min(e[k].min() for e in ends) - margin, max(e[k].max() for e in ends) + margin) for k in (0, 1)]
@@ -132,7 +126,7 @@ def slices(results: Mapping[str, Fields], cut: str, index: Sequence[int]) -> plt
     for name in ordered(compare.common_fields(results), FIELDS_FIRST):
         scale = plots.colours(*(plots.layer(f, name, cut, k) for f, k in zip(results.values(), index)))
         draw += [partial(one, name, scale, label, k) for label, k in zip(results, index)]
-    return _grid(draw, len(results), sides)
+    return panels(draw, len(results), plane_size(sides))
 
 
 def maps(tables: Mapping[str, Table], names: Sequence[str]) -> plt.Figure:
@@ -148,7 +142,7 @@ def maps(tables: Mapping[str, Table], names: Sequence[str]) -> plt.Figure:
     for name in names:
         scale = plots.colours(*(table[name] for table in tables.values()))
         draw += [partial(one, name, scale, label) for label in tables]
-    return _grid(draw, len(tables), sides)
+    return panels(draw, len(tables), plane_size(sides))
 
 
 def _slices(page: Page, results: Mapping[str, Fields], cut: str, at: float | None) -> None:
@@ -156,6 +150,21 @@ def _slices(page: Page, results: Mapping[str, Fields], cut: str, at: float | Non
     where = ", ".join(f"{label} at {cut} = {number(f.axis(cut)[k])}" for (label, f), k in zip(results.items(), index))
     page.add("Slices", page.picture("slices", slices(results, cut, index),
                                     f"Slices ({where}), each field on one colour scale; blank: no value."))
+
+
+def _laws(page: Page, results: Results, fields: Mapping[str, Fields]) -> None:
+    """Voxels of all results in one panel for each law whose fields all have."""
+    common = compare.common_fields(fields)
+    draw: list[Draw] = []
+    if {"phi", "gd_over_dv"} <= set(common):
+        fluidity = {label: lawplots.parameters(r.tables, "fluidity", lawplots.FLUIDITY) for label, r in results.items()}
+        draw.append(partial(compare.fluidity_against_phi, fields, fluidity))
+    if {"inertial_number", "mu"} <= set(common):
+        friction = {label: lawplots.parameters(r.tables, "rheology", lawplots.FRICTION) for label, r in results.items()}
+        draw.append(partial(compare.friction_against_inertial, fields, friction))
+    if draw:
+        page.add("Rheology", page.picture("rheology", panels(draw, 2, (5.4, 4)), "A point per voxel, a colour per result; left out are voxels where the kernel smears the "
+                                          "edge of the material. Solid laws are drawn to compare with, not fitted; dashed: fitted in the tables of each result."))
 
 
 def _spreading(page: Page, tables: Mapping[str, Table]) -> None:
@@ -175,6 +184,46 @@ def _tracers(page: Page, results: Mapping[str, Tracers]) -> None:
                                      "Paths of tracers from their seeds (dots)."))
 
 
+def _lines(page: Page, name: str, tables: Mapping[str, Table]) -> list[str]:
+    """Lines followed through a field, of all results in one picture."""
+    followed = {label: table for label, table in tables.items() if flowlines.lines_of(table)}
+    if not followed:
+        return []
+    cut = flowlines.plane_of(next(iter(followed.values())))
+    across, up = [axis for axis in AXES if axis != cut]
+
+    def draw(ax: Axes) -> None:
+        for k, (label, table) in enumerate(followed.items()):
+            flowlines.flow_lines(table, ax=ax, colour=f"C{k}", text=label, cut=cut)
+        ax.legend(fontsize="small")
+
+    sides = _spans([(table[across], table[up]) for table in followed.values()], 0)
+    return [page.picture(f"table_{name}", panels([draw], 1, plane_size(sides, 7)), f"Table {name}: the lines as seen along {cut}, dots where they begin.")]
+
+
+def _table_pictures(page: Page, name: str, tables: Mapping[str, Table]) -> list[str]:
+    first = next(iter(tables.values()))
+    drawn = compare.shared_columns(tables)
+    if all(flowlines.is_lines(table) for table in tables.values()):
+        return _lines(page, name, tables)
+    if all(plots.is_map(table) for table in tables.values()):
+        drawn = [c for c in drawn if c != first.columns[1]]
+        return [page.picture(f"table_{name}", maps(tables, drawn), f"Table {name}, each column on one colour scale.")]
+    if not drawn or not all(len(t[t.columns[0]]) > 1 and t.columns[0] == first.columns[0] for t in tables.values()):
+        return []
+    overlaid = lawplots.panels_of_all(tables)
+    apart = [c for c in drawn if not any(c in panel.columns for panel in overlaid)]
+    pictures = []
+    if overlaid:
+        figure = panels([partial(lawplots.runs_with_laws, tables, panel) for panel in overlaid], 2, (5.4, 4))
+        pictures.append(page.picture(f"table_{name}_laws", figure, f"Table {name} with laws: dashed those fitted to each result, solid to compare with, not fitted; open points "
+                                     "were left out of the fit; bars are standard errors."))
+    if apart:
+        draw = [lambda ax, c=c: compare.columns(tables, c, ax) for c in apart]
+        pictures.append(page.picture(f"table_{name}", _legend(panels(draw, 3, (3.9, 2.9))), f"Table {name}; bars are standard errors."))
+    return pictures
+
+
 def _measured(page: Page, name: str, tables: Mapping[str, Table]) -> None:
     first = next(iter(tables.values()))
     parts = [f"<p>{html.escape(first.description)}: {html.escape(first.equation)}</p>"]
@@ -183,13 +232,7 @@ def _measured(page: Page, name: str, tables: Mapping[str, Table]) -> None:
         alone = ", ".join(f"{html.escape(label)} {number(t.numbers['collapse'].value)}" for label, t in tables.items())
         parts.append(f"<p>Collapse, the part of the variance that the packing fraction tells: alone {alone}; "
                      f"of all together {number(compare.collapse_of(tables).told)}. Curves that lie apart do not collapse.</p>")
-    drawn = compare.shared_columns(tables)
-    if all(plots.is_map(table) for table in tables.values()):
-        drawn = [c for c in drawn if c != first.columns[1]]
-        parts.append(page.picture(f"table_{name}", maps(tables, drawn), f"Table {name}, each column on one colour scale."))
-    elif drawn and all(len(t[t.columns[0]]) > 1 and t.columns[0] == first.columns[0] for t in tables.values()):
-        draw = [lambda ax, c=c: compare.columns(tables, c, ax) for c in drawn]
-        parts.append(page.picture(f"table_{name}", _legend(panels(draw, 3, (3.9, 2.9))), f"Table {name}; bars are standard errors."))
+    parts += _table_pictures(page, name, tables)
     page.add(f"Measured: {name.replace('_', ' ')}", *parts)
 
 
@@ -223,6 +266,7 @@ def write_comparison(folders: Sequence[str], output: str | None = None, labels: 
                 _velocity(page, fields, axis, cut)
             _slices(page, fields, cut, at)
             _profiles(page, fields, axis)
+            _laws(page, results, fields)
         if "diffusion" in tables:
             _spreading(page, tables["diffusion"])
         if tracers := compare.tracers_of(results):

@@ -160,6 +160,48 @@ def columns(tables: Mapping[str, Table], name: str, ax: Axes | None = None, agai
     return ax
 
 
+def _voxels(results: Mapping[str, Fields], x: str, y: str, ax: Axes) -> None:
+    """One field against another, a point for each voxel away from smeared edges, a colour for each result. The points of all
+    are drawn in a random order, so that none hides the others."""
+    parts = []
+    for k, (label, fields) in enumerate(results.items()):
+        (a, x_label), (b, y_label) = plots.scalar(fields, x), plots.scalar(fields, y)
+        there = plots.inside(fields)
+        drawn = np.isfinite(a) & np.isfinite(b) & (True if there is None else there)
+        parts.append(np.column_stack([a[drawn], b[drawn], np.full(drawn.sum(), k)]))
+        ax.plot([], [], "o", markersize=4, color=f"C{k}", label=label)
+        ax.set(xlabel=x_label, ylabel=y_label)
+    points = np.random.default_rng(1).permutation(np.concatenate(parts))
+    ax.scatter(points[:, 0], points[:, 1], s=4, linewidth=0, alpha=0.6, color=[f"C{k:.0f}" for k in points[:, 2]], rasterized=True)
+    ends = [np.percentile(part[:, 1], [0.5, 99.5]) for part in parts if len(part)]
+    if ends:
+        low, high = np.min(ends), np.max(ends)
+        ax.set_ylim(min(0.0, low), high * 1.1 if high > 0 else None)
+    ax.grid(alpha=0.3)
+
+
+def _fits(fitted: Mapping[str, tuple[float, ...] | None], law: str) -> list[plots.Fit]:
+    """Of those results that have one, in their colours."""
+    return [plots.Fit(parameters, f"{label}: {law}, fitted", f"C{k}") for k, (label, parameters) in enumerate(fitted.items()) if parameters]
+
+
+def fluidity_against_phi(results: Mapping[str, Fields], fitted: Mapping[str, tuple[float, ...] | None], ax: Axes | None = None) -> Axes:
+    """g d/δv of the voxels of all results against φ, with the law (3) and what was fitted to each."""
+    ax = ax or plt.subplots()[1]
+    _voxels(results, "phi", "gd_over_dv", ax)
+    plots.fluidity_laws(ax, _fits(fitted, "(A20)"))
+    return ax
+
+
+def friction_against_inertial(results: Mapping[str, Fields], fitted: Mapping[str, tuple[float, ...] | None], ax: Axes | None = None) -> Axes:
+    """μ of the voxels of all results against I, with μ(I) of common parameters and those fitted to each."""
+    ax = ax or plt.subplots()[1]
+    _voxels(results, "inertial_number", "mu", ax)
+    spans = [span for fields in results.values() if (span := plots.inertial_span(fields))]
+    plots.friction_laws(ax, (min(low for low, _ in spans), max(high for _, high in spans)) if spans else None, _fits(fitted, "μ(I)"))
+    return ax
+
+
 def heights(results: Mapping[str, Fields], name: str, along: str, across: str, count: int = 6) -> Array:
     """Places along an axis, far from each other, at which every result knows a field over more than half of the width
     that it has anywhere; voxel centres of the first result."""

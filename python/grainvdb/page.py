@@ -97,6 +97,12 @@ def panels(draw: Sequence[Draw], columns: int, size: tuple[float, float]) -> plt
     return figure
 
 
+def plane_size(sides: Sequence[tuple[float, float]], width: float = 4.2) -> tuple[float, float]:
+    """Of one panel with a colour bar that shows a plane, which spans these places across and up."""
+    across, up = (high - low for low, high in sides)
+    return width, float(np.clip(0.76 * width * up / across, 0.38 * width, 1.67 * width)) + 0.7
+
+
 def number(value: float) -> str:
     return f"{value:.4g}"
 

@@ -1,7 +1,8 @@
 """Pictures of results. Every function draws into axes that it is given or makes, and returns them."""
 from __future__ import annotations
 
-from collections.abc import Mapping
+import dataclasses
+from collections.abc import Mapping, Sequence
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -16,6 +17,8 @@ from .tracers import Tracers
 
 # Fields of three numbers that are no vector in space.
 TRIPLES = ("principal_stress",)
+# Two unit vectors in one field.
+SLIP_LINES = "slip_lines"
 # Part of the packing fraction inside below which a voxel is taken for one at a smeared edge.
 SMEARED = 0.8
 
@@ -28,7 +31,7 @@ def label(name: str, unit: str) -> str:
 
 def scalar(fields: Fields, name: str, time: int = -1) -> tuple[Array, str]:
     """A field as one number per voxel with its label: the magnitude of a vector, a third of the trace of a tensor, the
-    most compressive principal stress."""
+    most compressive principal stress, the angle between slip lines in degrees."""
     values = fields.values(name, time).astype(float)
     unit = fields.unit(name)
     if values.ndim == 3:
@@ -37,6 +40,9 @@ def scalar(fields: Fields, name: str, time: int = -1) -> tuple[Array, str]:
         return values[..., [0, 4, 8]].mean(axis=3), label(f"mean {name}", unit)
     if name in TRIPLES:
         return values[..., 2], label(f"{name} 3", unit)
+    if name == SLIP_LINES:
+        cosine = np.clip((values[..., :3] * values[..., 3:]).sum(axis=3), -1, 1)
+        return np.degrees(np.arccos(np.abs(cosine))), "angle between slip lines [degrees]"
     return np.linalg.norm(values[..., :3], axis=3), label(f"|{name}|", unit)
 
 
@@ -93,6 +99,8 @@ def field_slice(fields: Fields, name: str, axis: str | None = None, index: int |
     vectors = fields.values(name, time)
     if vectors.ndim == 4 and vectors.shape[3] == 3 and name not in TRIPLES:
         _arrows(fields, ax, np.take(vectors, index, axis=2 - AXES.index(axis)), across, up)
+    if name == SLIP_LINES:
+        _dashes(fields, ax, np.take(vectors, index, axis=2 - AXES.index(axis)), across, up)
     ax.set(xlabel=label(across, fields.unit(across)), ylabel=label(up, fields.unit(up)), title=text)
     return ax
 
@@ -102,6 +110,16 @@ def _arrows(fields: Fields, ax: Axes, vectors: Array, across: str, up: str) -> N
     part = vectors[step // 2::step, step // 2::step]
     ax.quiver(fields.axis(across)[step // 2::step], fields.axis(up)[step // 2::step], part[..., AXES.index(across)],
               part[..., AXES.index(up)], color="white", pivot="middle", width=0.006)
+
+
+def _dashes(fields: Fields, ax: Axes, vectors: Array, across: str, up: str) -> None:
+    """Both families of slip lines as far as they lie in the plane, without heads: they have no sense."""
+    step = max(1, max(vectors.shape[:2]) // 14)
+    part = vectors[step // 2::step, step // 2::step]
+    for first, colour in ((0, "white"), (3, "orange")):
+        ax.quiver(fields.axis(across)[step // 2::step], fields.axis(up)[step // 2::step], part[..., first + AXES.index(across)],
+                  part[..., first + AXES.index(up)], color=colour, pivot="middle", width=0.006, headwidth=0, headlength=0, headaxislength=0,
+                  angles="xy", scale_units="xy", scale=1 / (0.8 * step * fields.voxel))
 
 
 def _layers(values: Array, axis: str) -> tuple[Array, Array]:
@@ -189,41 +207,68 @@ def smeared_below(fields: Fields, time: int = -1) -> float:
     return SMEARED * float(np.percentile(filled, 90)) if filled.size else 0.0
 
 
-def _inside(fields: Fields, time: int) -> Array | None:
+def inside(fields: Fields, time: int = -1) -> Array | None:
+    """Which voxels do not lie at smeared edges; None in a result without φ, of which nobody knows."""
     return fields.values("phi", time) >= smeared_below(fields, time) if "phi" in fields else None
+
+
+@dataclasses.dataclass(frozen=True)
+class Fit:
+    """Parameters of a law, and how its line is drawn and called."""
+
+    parameters: tuple[float, ...]
+    text: str
+    colour: str = "red"
+
+
+def fluidity_laws(ax: Axes, fits: Sequence[Fit]) -> None:
+    """The law (3), solid, and fits of (A20), dashed, over the span of φ of a panel of g d/δv."""
+    low, high = ax.get_xlim()
+    phi = np.linspace(low, high, 400)
+    ax.plot(phi, laws.fluidity(phi, *laws.FLUIDITY_3), "k-", linewidth=1.2, label="(3)")
+    for fit in fits:
+        ax.plot(phi, laws.fluidity(phi, *fit.parameters), "--", color=fit.colour, linewidth=1.2, label=fit.text)
+    top = np.nanmax([ax.get_ylim()[1], 2.2])
+    ax.set(xlim=(low, high), ylim=(0, top), xlabel="φ", ylabel="g d/δv")
+    ax.legend()
+
+
+def friction_laws(ax: Axes, span: tuple[float, float] | None, fits: Sequence[Fit]) -> None:
+    """μ(I) of common parameters, solid, and fitted ones, dashed, over a span of I in a panel of μ; none where there is no span."""
+    if span:
+        inertial = np.geomspace(*span, 200)
+        ax.plot(inertial, laws.friction(inertial, *laws.INERTIAL), "k-", linewidth=1.2, label=laws.friction_text(*laws.INERTIAL))
+        for fit in fits:
+            ax.plot(inertial, laws.friction(inertial, *fit.parameters), "--", color=fit.colour, linewidth=1.2, label=fit.text)
+        ax.set(xscale="log", xlim=span)
+        ax.legend()
+    ax.set(xlabel="inertial number I", ylabel="μ")
+
+
+def inertial_span(fields: Fields, time: int = -1) -> tuple[float, float] | None:
+    """From the first percentile to the greatest inertial number above 0 away from smeared edges; None where there is none."""
+    values = fields.values("inertial_number", time)
+    there = inside(fields, time)
+    positive = values[np.isfinite(values) & (values > 0) & (True if there is None else there)]
+    if not positive.size:
+        return None
+    low, high = np.percentile(positive, [1, 100])
+    return float(low), float(high)
 
 
 def fluidity_against_phi(fields: Fields, time: int = -1, ax: Axes | None = None,
                          fitted: tuple[float, ...] | None = None) -> Axes:
     """g d/δv against φ away from smeared edges, with the law (3) and, when given, fitted parameters of (A20)."""
-    ax = against(fields, "phi", "gd_over_dv", time, ax, _inside(fields, time))
-    low, high = ax.get_xlim()
-    phi = np.linspace(low, high, 400)
-    ax.plot(phi, laws.fluidity(phi, *laws.FLUIDITY_3), "k-", linewidth=1.2, label="(3)")
-    if fitted:
-        ax.plot(phi, laws.fluidity(phi, *fitted), "r--", linewidth=1.2, label="(A20), fitted")
-    top = np.nanmax([ax.get_ylim()[1], 2.2])
-    ax.set(xlim=(low, high), ylim=(0, top), ylabel="g d/δv")
-    ax.legend()
+    ax = against(fields, "phi", "gd_over_dv", time, ax, inside(fields, time))
+    fluidity_laws(ax, [Fit(fitted, "(A20), fitted")] if fitted else [])
     return ax
 
 
 def friction_against_inertial(fields: Fields, time: int = -1, ax: Axes | None = None,
                               fitted: tuple[float, ...] | None = None) -> Axes:
     """μ against I away from smeared edges, with the law μ(I) of common and, when given, of fitted parameters."""
-    inside = _inside(fields, time)
-    ax = against(fields, "inertial_number", "mu", time, ax, inside)
-    values = fields.values("inertial_number", time)
-    positive = values[np.isfinite(values) & (values > 0) & (True if inside is None else inside)]
-    if positive.size:
-        low, high = np.percentile(positive, [1, 100])
-        inertial = np.geomspace(low, high, 200)
-        ax.plot(inertial, laws.friction(inertial, *laws.INERTIAL), "k-", linewidth=1.2, label=laws.friction_text(*laws.INERTIAL))
-        if fitted:
-            ax.plot(inertial, laws.friction(inertial, *fitted), "r--", linewidth=1.2, label="fitted: " + laws.friction_text(*fitted))
-        ax.set(xscale="log", xlim=(low, high))
-        ax.legend()
-    ax.set(xlabel="inertial number I", ylabel="μ")
+    ax = against(fields, "inertial_number", "mu", time, ax, inside(fields, time))
+    friction_laws(ax, inertial_span(fields, time), [Fit(fitted, "fitted: " + laws.friction_text(*fitted))] if fitted else [])
     return ax
 
 

@@ -20,11 +20,11 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from . import hdf, lawplots, plots
+from . import flowlines, hdf, lawplots, plots
 from .beside import write_comparison
 from .fields import AXES, Fields
-from .page import (FIELDS_FIRST, PROFILES_FIRST, Draw, Page, html_table, number, ordered, panels, provenance,
-                   with_error, write)
+from .page import (FIELDS_FIRST, PROFILES_FIRST, Draw, Page, html_table, number, ordered, panels, plane_size,
+                   provenance, with_error, write)
 from .tables import Table, Tables
 from .tracers import Tracers
 
@@ -148,16 +148,42 @@ def _table_caption(table: Table) -> str:
     return " ".join(said)
 
 
-def _measured(page: Page, table: Table) -> None:
+def _sides(table: Table, axes: Sequence[str]) -> list[tuple[float, float]]:
+    return [(float(table[axis].min()), float(table[axis].max())) for axis in axes]
+
+
+def _lines(page: Page, table: Table, fields: Fields | None) -> list[str]:
+    if not flowlines.lines_of(table):
+        return []
+    cut = flowlines.plane_of(table)
+    over = flowlines.background(fields)
+    sides = [(float(fields.axis(a)[0]), float(fields.axis(a)[-1])) for a in AXES if a != cut] if fields and over else _sides(table, [a for a in AXES if a != cut])
+    caption = f"Table {table.name}: the lines as seen along {cut}, dots where they begin; of the last output time."
+    caption += f" Under them {over.replace('_', ' ')} in the layer of voxels at their mean {cut}." if over else ""
+    return [page.picture(f"table_{table.name}", panels([partial(flowlines.flow_lines, table, fields)], 1, plane_size(sides, 7)), caption)]
+
+
+def _map(page: Page, table: Table, names: Sequence[str]) -> list[str]:
+    """Pictures of a table of places; of a flow with its theory also lines at some heights."""
+    draw = [partial(plots.table_map, table, c) for c in names]
+    pictures = [page.picture(f"table_{table.name}", panels(draw, 3, plane_size(_sides(table, table.columns[:2]))), f"Table {table.name}; blank: no value.")]
+    if pairs := lawplots.flow_pairs(table):
+        figure = panels([partial(lawplots.at_heights, table, *pair) for pair in pairs], 2, (5.4, 3.8))
+        pictures.append(page.picture(f"table_{table.name}_heights", figure, f"Table {table.name} at some heights; points: measured, lines: theory."))
+    return pictures
+
+
+def _measured(page: Page, table: Table, fields: Fields | None) -> None:
     parts = [f"<p>{html.escape(table.description)}: {html.escape(table.equation)}</p>"]
     parts += [f"<p>Note: {html.escape(remark)}</p>" for remark in table.remarks]
     numbers = [(n.name, with_error(n.value, n.error), n.unit, n.description) for n in table.numbers.values()]
     if numbers:
         parts.append(html_table(numbers, ("quantity", "value", "unit", "what it is")))
     drawn = [c for c in table.columns[1:] if not c.endswith("_error") and np.any(np.isfinite(table[c]))]
-    if plots.is_map(table):
-        draw = [partial(plots.table_map, table, c) for c in drawn if c != table.columns[1]]
-        parts.append(page.picture(f"table_{table.name}", panels(draw, 3, (3.9, 3.9)), f"Table {table.name}; blank: no value."))
+    if flowlines.is_lines(table):
+        parts += _lines(page, table, fields)
+    elif plots.is_map(table):
+        parts += _map(page, table, [c for c in drawn if c != table.columns[1]])
     elif drawn and len(table[table.columns[0]]) > 1:
         overlaid = lawplots.law_panels(table)
         apart = [c for c in drawn if not any(c in panel.columns for panel in overlaid)]
@@ -215,6 +241,7 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
     page = Page(f"grainvdb: {os.path.basename(os.path.abspath(folder))}")
     with contextlib.ExitStack() as stack:
         origin: dict[str, str] = {}
+        fields = None
         tables = stack.enter_context(Tables(folder)) if have["tables.h5"] else None
         if at_scales:
             results = {name: stack.enter_context(Fields(os.path.join(folder, name))) for name in at_scales}
@@ -237,7 +264,7 @@ def write_report(folder: str, output: str | None = None, axis: str = "z", cut: s
         if tables:
             origin = origin or tables.provenance
             for table in tables.values():
-                _measured(page, table)
+                _measured(page, table, fields)
         if have["run.json"]:
             _run(page, _record(os.path.join(folder, "run.json")))
         if origin:

@@ -166,6 +166,18 @@ bool cut_apart(const std::vector<const Wall*>& walls) {
 
 }  // namespace
 
+// Planes that touch a cone go through its apex. Behind the apex of a cone with the material around it, the apex is
+// nearest.
+HalfSpace half_space_at(const Wall& w, const Vec3& x) {
+  Vec3 normal = normal_at(w, x);
+  if (w.shape == Wall::Shape::cone && !w.encloses) {
+    const AboutAxis at = about_axis(w, x);
+    if (at.along * std::cos(w.angle) + at.outward * std::sin(w.angle) < 0) normal = unit(combined(1, x, -1, w.point));
+  }
+  const double beyond_axis = w.shape == Wall::Shape::cylinder ? (w.encloses ? -w.radius : w.radius) : 0;
+  return {normal, dot(normal, w.point) + beyond_axis};
+}
+
 Vec3 inward_normal(const BoxFace& face) {
   Vec3 normal{};
   normal[static_cast<std::size_t>(face.axis)] = face.high ? -1 : 1;

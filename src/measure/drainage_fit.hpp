@@ -10,12 +10,13 @@
 
 namespace grainvdb {
 
-/// A downward velocity at the distance x from the middle and the height z above the slot.
+/// The velocity at the distance x from the middle and the height z above the slot.
 struct DrainagePoint {
   double x = 0;            ///< [length]
   double z = 0;            ///< [length]
-  double v = 0;            ///< [length/time]
+  double v = 0;            ///< downward [length/time]
   double independent = 1;  ///< the part of it that no other point tells, in (0, 1]
+  double u = 0;            ///< along x [length/time]
 };
 
 /// Where profiles have no width.

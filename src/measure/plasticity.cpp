@@ -6,7 +6,8 @@ namespace grainvdb {
 
 std::vector<MeasurementInfo> plasticity_measurements() {
   return {incipient_yield_measurement(), coaxiality_measurement(), stochastic_flow_rule_measurement(),
-          box_strain_rate_measurement(), collapse_measurement(),   kinematic_fit_measurement()};
+          box_strain_rate_measurement(), collapse_measurement(),   kinematic_fit_measurement(),
+          mean_field_measurement()};
 }
 
 OptionInfo least_phi_option() {

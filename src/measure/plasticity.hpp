@@ -12,6 +12,7 @@ MeasurementInfo stochastic_flow_rule_measurement();
 MeasurementInfo box_strain_rate_measurement();
 MeasurementInfo collapse_measurement();
 MeasurementInfo kinematic_fit_measurement();
+MeasurementInfo mean_field_measurement();
 
 /// `phi_min`: the packing fraction below which voxels count as no material.
 OptionInfo least_phi_option();

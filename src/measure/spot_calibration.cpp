@@ -78,7 +78,8 @@ class Part {
   }
 
   std::unique_ptr<Measurement> make(const MeasurementSetting& setting) const {
-    return info_.make({options_, setting.stages, setting.lattice, setting.kernel, setting.box, setting.grain_density});
+    return info_.make(
+        {options_, setting.stages, setting.lattice, setting.kernel, setting.box, setting.grain_density, setting.walls});
   }
   MeasurementNeeds needs() const { return info_.needs(options_); }
 

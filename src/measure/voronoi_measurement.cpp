@@ -21,20 +21,29 @@ namespace {
 constexpr double default_window = 2.2;  // mean diameters
 constexpr const char* no_map = "none";
 
-/// The grains whose centres lie in the box along axes that are not periodic: others have no cell.
+/// The grains whose centres lie on the right side of all walls, and in the box along axes that are not periodic: others
+/// have no cell.
 struct Inside {
   Columns3 position;
   std::vector<double> radius;
   std::vector<std::int64_t> id;
+  std::size_t behind_walls = 0, outside_box = 0;
 };
 
-Inside inside(const Frame& frame) {
+Inside inside(const Frame& frame, const WallDomain& walls) {
   Inside in;
   for (std::size_t i = 0; i < frame.particles.size(); ++i) {
     const Vec3 x = wrapped(frame.box, frame.particles.position, i);
     bool is_inside = true;
     for (std::size_t a = 0; a < 3; ++a) is_inside = is_inside && x[a] >= frame.box.lo[a] && x[a] <= frame.box.hi[a];
-    if (!is_inside) continue;
+    if (!walls.contains(x)) {
+      ++in.behind_walls;
+      continue;
+    }
+    if (!is_inside) {
+      ++in.outside_box;
+      continue;
+    }
     push_back(in.position, x);
     in.radius.push_back(frame.particles.radius[i]);
     in.id.push_back(frame.particles.id[i]);
@@ -60,11 +69,12 @@ std::vector<double> middles(const Box& box, const Box& counted, std::size_t axis
 class Voronoi : public Measurement {
  public:
   explicit Voronoi(const MeasurementSetting& setting)
-      : options_(setting.options), region_(setting.options), kernel_(setting.kernel) {}
+      : options_(setting.options), region_(setting.options), kernel_(setting.kernel), walls_(setting.walls) {}
 
   void add(const Frame& frame) override {
-    const Inside grains = inside(frame);
-    left_out_ += frame.particles.size() - grains.radius.size();
+    const Inside grains = inside(frame, walls_);
+    outside_box_ += grains.outside_box;
+    behind_walls_ += grains.behind_walls;
     if (grains.radius.empty()) return;
     if (const auto pair = coincident_pair(frame.box, grains.position, grains.radius))
       throw InputError(
@@ -74,7 +84,7 @@ class Voronoi : public Measurement {
            "centres at least 1e-6 diameters apart",
            "Leave one of them out with select, or do without measure.voronoi"});
     if (!(window_ > 0)) set_lengths(mean_diameter(grains.radius));
-    const VoronoiCells cells = voronoi_cells(frame.box, grains.position, grains.radius);
+    const VoronoiCells cells = voronoi_cells(frame.box, grains.position, grains.radius, walls_);
     const LocalPacking packing(frame.box, grains.position, grains.radius, cells, window_);
     const std::vector<double> smooth = kernel_packing(frame.box, grains.position, grains.radius, kernel_);
     for (std::size_t i = 0; i < grains.radius.size(); ++i) {
@@ -83,6 +93,7 @@ class Voronoi : public Measurement {
         ++not_enclosed_;
         continue;
       }
+      if (cells.at_wall[i]) ++at_walls_;
       cell_.add(packing.of_cell(i));
       local_.add(packing.about(i));
       kernel_phi_.add(smooth[i]);
@@ -113,7 +124,7 @@ class Voronoi : public Measurement {
       for (const double y : ys)
         for (const double x : xs) {
           const LocalPacking::Window w = packing.window({x, y, z});
-          if (!w.enclosed) {
+          if (!w.enclosed || walls_.distance({x, y, z}) < window_) {
             ++skipped_;
             continue;
           }
@@ -158,11 +169,16 @@ class Voronoi : public Measurement {
     table.numbers.push_back({.name = "at_faces",
                              .value = not_enclosed_ / all,
                              .description = "share of the grains whose cell ends at a face of the box: left out"});
+    table.numbers.push_back({.name = "at_walls",
+                             .value = at_walls_ / cell_.count(),
+                             .description = "share of the counted grains whose cell ends at a wall"});
     if (cell_.count() == 0)
       table.remarks.emplace_back("No grain that counts has a cell that ends at other grains alone.");
-    if (left_out_ > 0)
-      table.remarks.push_back(std::to_string(left_out_) +
+    if (outside_box_ > 0)
+      table.remarks.push_back(std::to_string(outside_box_) +
                               " times a grain lay outside the box along an axis that is not periodic: it has no cell.");
+    if (behind_walls_ > 0)
+      table.remarks.push_back(std::to_string(behind_walls_) + " times a grain lay behind a wall: it has no cell.");
     return table;
   }
 
@@ -184,8 +200,9 @@ class Voronoi : public Measurement {
                              .dimension = dimension::length,
                              .description = "radius of a window"});
     if (skipped_ > 0)
-      table.remarks.push_back(std::to_string(skipped_) +
-                              " windows were left out: they hold no grain, or one whose cell ends at a face.");
+      table.remarks.push_back(
+          std::to_string(skipped_) +
+          " windows were left out: they reach behind a wall, or hold no grain, or one whose cell ends at a face.");
     if (by_cells_.count() == 0) table.remarks.emplace_back("No window lies wholly within the counted region.");
     return table;
   }
@@ -193,12 +210,13 @@ class Voronoi : public Measurement {
   OptionValues options_;
   CountedRegion region_;
   LucyKernel kernel_;
+  WallDomain walls_;
   double width_ = number_option(options_, "bin_width");
   double window_ = 0;
   Spread cell_{width_}, local_{width_}, kernel_phi_{width_}, by_centres_{width_}, by_volume_{width_}, by_cells_{width_};
   std::optional<PackingMap> map_;
-  double volume_ = 0, cell_volume_ = 0, not_enclosed_ = 0;
-  std::size_t left_out_ = 0, skipped_ = 0;
+  double volume_ = 0, cell_volume_ = 0, not_enclosed_ = 0, at_walls_ = 0;
+  std::size_t outside_box_ = 0, behind_walls_ = 0, skipped_ = 0;
 };
 
 }  // namespace

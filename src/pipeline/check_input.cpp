@@ -163,6 +163,7 @@ Lattice check_measure_against_input(const Pipeline& pipeline, FrameSource& sourc
                          "no input.contacts", "input.contacts.files", "Name the contact dumps"});
     require_columns(pipeline, *columns, source, wanted);
   }
+  wall_domain(pipeline, source, wanted);
   for (PlaneRun& run : plane_runs(pipeline)) {
     set_area(*run.pipeline.planes, source.frames()[wanted.front()]);
     check_against_input(run.pipeline, run.plan, source);

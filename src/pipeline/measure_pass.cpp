@@ -13,6 +13,7 @@
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/output_units.hpp"
 #include "pipeline/provenance.hpp"
+#include "pipeline/wall_domain.hpp"
 
 namespace grainvdb {
 namespace {
@@ -47,6 +48,7 @@ MeasurePass::MeasurePass(const Pipeline& pipeline, const Plan& plan, FrameSource
       wanted_(select_frames(pipeline.frames, source.frames().size())),
       lattice_(check_measure_against_input(pipeline, source)),
       plane_runs_(plane_runs(pipeline)) {
+  const WallDomain walls = wall_domain(pipeline, source, wanted_);
   for (const MeasurementInfo& info : measurement_registry()) {
     const auto it = pipeline.measure.find(info.name);
     if (it == pipeline.measure.end()) continue;
@@ -55,7 +57,8 @@ MeasurePass::MeasurePass(const Pipeline& pipeline, const Plan& plan, FrameSource
                                      lattice_,
                                      LucyKernel(pipeline.cutoff > 0 ? pipeline.cutoff : 1),
                                      source.frames()[wanted_.front()].box,
-                                     pipeline.input.density};
+                                     pipeline.input.density,
+                                     walls};
     entries_.push_back({info.name, info.needs(it->second), info.make(setting)});
   }
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "grainvdb/frame_source.hpp"
+#include "grainvdb/measurement.hpp"
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
 
@@ -48,6 +49,28 @@ TEST(Parsimony, PackingFractionAlone) {
   EXPECT_EQ(r.report.grids, 1U);
   EXPECT_FALSE(r.only().has_mask);
   EXPECT_FALSE(r.record.layouts.at(0).has_mask);
+}
+
+// A pipeline that asks for g(r) alone: positions are read once, nothing is splatted, and no lattice is needed.
+TEST(Parsimony, PairCorrelationAlone) {
+  Pipeline p = shear_cell_pipeline({});
+  p.voxel = p.cutoff = 0;
+  OptionValues options;
+  for (const OptionInfo& option : find_measurement("pair_correlation")->options)
+    options[option.name] = option.default_value;
+  p.measure["pair_correlation"] = options;
+  const Plan plan = make_plan(p);
+  EXPECT_TRUE(plan.sweeps.empty());
+  EXPECT_TRUE(plan.stages.empty());
+  const auto source = open_dumps(p.input);
+  const RunReport report = measure(p, *source);
+  EXPECT_EQ(report.channels, 0U);
+  EXPECT_EQ(report.grids, 0U);
+  EXPECT_THAT(report.read.columns_parsed, UnorderedElementsAre("id", "x", "y", "z", "radius"));
+  EXPECT_EQ(report.read.files_opened.size(), 5U);
+  EXPECT_EQ(report.read.frames_read, 5U);
+  ASSERT_EQ(report.tables.size(), 1U);
+  EXPECT_EQ(report.tables[0].name, "pair_correlation");
 }
 
 TEST(Parsimony, DensityReadsNoRadius) {

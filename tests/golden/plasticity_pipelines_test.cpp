@@ -54,5 +54,16 @@ TEST(KinematicPipeline, FindsOneBByTwoWays) {
   EXPECT_NEAR(of_flow, of_widths, 0.3 * of_flow);
 }
 
+// The theory of spots makes the fall; sideways it makes the flow of an incompressible one, or somewhat more.
+TEST(KinematicPipeline, FindsTheFlowOfSpots) {
+  const auto tables = tables_of("kinematic.yaml");
+  const Table& flow = tables.at("mean_field");
+  EXPECT_EQ(number(flow, "b"), number(tables.at("kinematic_fit"), "b"));
+  EXPECT_NEAR(number(flow, "velocity_over_drift"), 1, 0.03);
+  EXPECT_GT(number(flow, "sideways_over_drift"), 0.5);
+  EXPECT_LT(number(flow, "sideways_over_drift"), 1.1);
+  EXPECT_TRUE(flow.remarks.empty());
+}
+
 }  // namespace
 }  // namespace grainvdb::testing::plasticity_pipelines_test

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -10,7 +12,11 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "grainvdb/error.hpp"
+#include "grainvdb/measurement.hpp"
 #include "physics/walls_scene.hpp"
+#include "support/lattice_packing.hpp"
+#include "support/memory_source.hpp"
 #include "support/run_in_memory.hpp"
 #include "support/scenes.hpp"
 
@@ -183,6 +189,37 @@ TEST(Walls, WallsThatDoNotFitTheBoxAreRefused) {
   EXPECT_THAT(with({Wall::Shape::cone, {0, 0, 0}, {0, 0, 1}, 0, 0.5}), HasSubstr("meets the periodic boundary"));
   EXPECT_THAT(with({Wall::Shape::cylinder, {1, 1, 0}, {0, 0, 1}, 0.9}), HasSubstr("meets the periodic boundary"));
   EXPECT_EQ(with({Wall::Shape::plane, {0, 0, 0}, {0, 0, 3}}), "no error");
+}
+
+/// The numbers of a table by their names.
+std::map<std::string, double> numbers_of(const RunReport& report, const std::string& table) {
+  std::map<std::string, double> numbers;
+  for (const Table& t : report.tables)
+    if (t.name == table)
+      for (const Quantity& q : t.numbers) numbers[q.name] = q.value;
+  return numbers;
+}
+
+// The walls of the pipeline file reach a measurement that asks for no field: with all faces as walls the cells of a
+// cubic packing are all cubes. Walls that do not fit the box are refused there, too.
+TEST(Walls, EndVoronoiCells) {
+  const auto at_rest = [](const Vec3&) { return Vec3{}; };
+  MemorySource open({cubic_packing(4, false, at_rest)}), periodic({cubic_packing(4, true, at_rest)});
+  Pipeline p = make_pipeline(0.5, {0, 0, 0}, 2, {});
+  OptionValues options;
+  for (const OptionInfo& option : find_measurement("voronoi")->options) options[option.name] = option.default_value;
+  p.measure["voronoi"] = options;
+  EXPECT_DOUBLE_EQ(numbers_of(measure(p, open), "voronoi").at("at_faces"), 56 / 64.0);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool high : {false, true}) p.walls.faces.push_back({axis, high});
+  const auto within = numbers_of(measure(p, open), "voronoi");
+  EXPECT_EQ(within.at("at_faces"), 0);
+  EXPECT_DOUBLE_EQ(within.at("at_walls"), 56 / 64.0);
+  EXPECT_NEAR(within.at("phi"), std::numbers::pi / 6, 1e-9);
+  EXPECT_LT(within.at("cells_deviation"), 1e-7);  // the root of what rounding leaves of a variance
+  p.walls.faces = {};
+  p.walls.surfaces = {{Wall::Shape::plane, {0, 0, 0}, {0.1, 0, 1}}};
+  EXPECT_THROW(measure(p, periodic), ConfigError);
 }
 
 }  // namespace

@@ -5,10 +5,12 @@ import shutil
 import tempfile
 import unittest
 
+import matplotlib.colors
+import matplotlib.pyplot as plt
 import numpy as np
 
-from grainvdb import Number, beside, compare, hdf, open_fields, open_tables, plots
-from report_test import Page, report
+from grainvdb import Number, beside, compare, hdf, lawplots, laws, open_fields, open_tables, plots
+from report_test import Page, curves, names, report, write_fits
 from support import measured, reduced, result, side_by_side, write_tracers
 
 
@@ -165,6 +167,78 @@ class SideBySide(unittest.TestCase):
         done = report(self.folder / "one", "--beside", self.folder / "two")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("Tracers", Page((self.folder / "one/beside/report.html").read_text()).headings)
+
+
+class LawsOfRuns(unittest.TestCase):
+    """Two results in one panel with the laws."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.addCleanup(plt.close, "all")
+        self.folders = {name: pathlib.Path(folder.name) / name for name in ("one", "two")}
+        for (name, path), fluidity in zip(self.folders.items(), ((1.9, 0.58, 2e-4, 0.05), [np.nan] * 4)):
+            path.mkdir()
+            shutil.copy(result() / "fields.hdf", path)
+            write_fits(path / "tables.h5", fluidity)
+
+    def tables(self, name):
+        opened = {label: open_tables(path) for label, path in self.folders.items()}
+        for one in opened.values():
+            self.addCleanup(one.close)
+        return {label: one[name] for label, one in opened.items()}
+
+    def test_each_has_its_points_and_its_fit(self):
+        tables = self.tables("fluidity")
+        (panel,) = lawplots.panels_of_all(tables)
+        ax = lawplots.runs_with_laws(tables, panel)
+        self.assertEqual(names(ax), ["(3)", "one", "one: (A20), fitted", "two"])  # that of two was refused
+        phi = np.array([0.52, 0.56, 0.58, 0.60])
+        line = curves(ax)["one: (A20), fitted"]
+        np.testing.assert_array_equal(line.get_ydata(), laws.fluidity(phi, 1.9, 0.58, 2e-4, 0.05))
+        self.assertEqual((line.get_linestyle(), line.get_color()), ("--", "C0"))
+        np.testing.assert_array_equal(curves(ax)["(3)"].get_xdata(), np.repeat(phi, 2))
+        np.testing.assert_array_equal(curves(ax)["(3)"].get_ydata(), laws.fluidity(np.repeat(phi, 2), *laws.FLUIDITY_3))
+        for container, (label, table) in zip(ax.containers, tables.items()):
+            self.assertEqual(container.get_label(), label)
+            np.testing.assert_array_equal(container.lines[0].get_ydata(), table["gd_over_dv"])
+
+    def test_panels_are_those_that_all_have(self):
+        tables = self.tables("rheology")
+        self.assertEqual([panel.y for panel in lawplots.panels_of_all(tables)], ["mu", "phi"])
+        ax = lawplots.runs_with_laws(tables, lawplots.panels_of_all(tables)[0])
+        self.assertEqual(ax.get_xscale(), "log")
+        self.assertEqual(names(ax), ["one", "one: μ(I), fitted", "two", "two: μ(I), fitted", "μ(I) = 0.12 … 0.55, I₀ = 0.2"])
+
+    def test_voxels_of_all_are_drawn_with_the_laws(self):
+        with open_fields(result()) as a, open_fields(result("4")) as b:
+            results = {"a": a, "b": b}
+            ax = compare.fluidity_against_phi(results, {"a": None, "b": (1.9, 0.57, 2e-4, 0.05)})
+            self.assertEqual(names(ax), ["(3)", "a", "b", "b: (A20), fitted"])
+            drawn = ax.collections[0].get_offsets()
+            expected = []
+            for fields in results.values():
+                phi, g = (fields.values(name, -1).astype(float) for name in ("phi", "gd_over_dv"))
+                kept = np.isfinite(g) & (phi >= plots.smeared_below(fields))
+                expected.append(np.column_stack([phi[kept], g[kept]]))
+            self.assertEqual([np.count_nonzero(np.all(ax.collections[0].get_facecolor()[:, :3] == matplotlib.colors.to_rgb(f"C{k}"), axis=1)) for k in (0, 1)],
+                             [len(points) for points in expected])
+            def ordered(points):
+                return points[np.lexsort(points.T)]
+
+            np.testing.assert_array_equal(ordered(np.asarray(drawn)), ordered(np.concatenate(expected)))
+            ax = compare.friction_against_inertial(results, {"a": (0.2, 0.6, 0.3), "b": None})
+            self.assertEqual(names(ax), ["a", "a: μ(I), fitted", "b", "μ(I) = 0.12 … 0.55, I₀ = 0.2"])
+            line = curves(ax)["a: μ(I), fitted"]
+            np.testing.assert_array_equal(line.get_ydata(), laws.friction(line.get_xdata(), 0.2, 0.6, 0.3))
+
+    def test_are_in_the_page(self):
+        one, two = self.folders.values()
+        done = report(one, "--beside", two)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = Page((one / "beside/report.html").read_text())
+        self.assertIn("Rheology", page.headings)
+        self.assertLessEqual({"rheology.png", "table_fluidity_laws.png", "table_rheology_laws.png"}, {path.name for path in (one / "beside").iterdir()})
 
 
 class Refusals(unittest.TestCase):

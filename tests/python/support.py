@@ -63,6 +63,14 @@ def measured(pipeline: str = "structure") -> pathlib.Path:
     return folder
 
 
+@functools.cache
+def draining() -> pathlib.Path:
+    """Tables and fields of the pipeline of plasticity, at voxels of a diameter."""
+    folder = pathlib.Path(_kept.name) / "draining"
+    subprocess.run([COMMAND, "run", ROOT / "pipelines/plasticity.yaml", "--set", "lattice.voxel=1", "--frames", ":2", "--output", folder, "--quiet"], check=True)
+    return folder
+
+
 def write_table(path: pathlib.Path, name: str, columns: dict[str, np.ndarray], numbers: dict[str, float]) -> None:
     """Adds a table to a tables.h5, as the library writes it."""
     with h5py.File(path, "a") as file:

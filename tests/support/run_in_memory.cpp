@@ -60,4 +60,8 @@ Result run(Pipeline pipeline, const std::vector<Frame>& frames) {
   return run(pipeline, source);
 }
 
+RunReport measure(const Pipeline& pipeline, FrameSource& source) {
+  return run_pipeline(pipeline, make_plan(pipeline), source, std::vector<std::unique_ptr<FieldSink>>{});
+}
+
 }  // namespace grainvdb::testing

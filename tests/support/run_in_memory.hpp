@@ -36,4 +36,7 @@ Result run(const Pipeline& pipeline, FrameSource& source);
 /// any.
 Result run(Pipeline pipeline, const std::vector<Frame>& frames);
 
+/// Makes the tables of the measurements and writes no field.
+RunReport measure(const Pipeline& pipeline, FrameSource& source);
+
 }  // namespace grainvdb::testing

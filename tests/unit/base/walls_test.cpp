@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/vec3.hpp"
+
 namespace grainvdb::walls_test {
 namespace {
 
@@ -111,6 +113,23 @@ TEST(WallDomain, DistancesFromEachShape) {
   const WallDomain both({{Shape::cone, {0, 0, 1}, {0, 0, 1}, 0, angle}, plane({0, 0, 4}, {0, 0, -1})});
   EXPECT_NEAR(both.distance({0, 0, 3}), 1, 1e-15);
   EXPECT_NEAR(both.distance({0, 0, 3.5}), 0.5, 1e-15);
+}
+
+// The plane that touches a wall next to a point is as far from the point as the wall.
+TEST(HalfSpaceAt, TouchesTheWallNextToAPoint) {
+  const WallDomain shapes({plane({0, 0, 2}, {0, 3, 4}),
+                           {Shape::cylinder, {1, 0, 0}, {0, 5, 0}, 2},
+                           {Shape::cylinder, {1, 0, 0}, {0, 5, 0}, 0.5, 0, false},
+                           {Shape::cone, {0, 0, -3}, {0, 0, 1}, 0, 0.5},
+                           {Shape::cone, {0, 1, 1}, {1, 0, 1}, 0, 0.4, false}});
+  const Vec3 x{1.8, 0.3, -0.4}, behind{-1, 1, 0};
+  for (const Wall& wall : shapes.walls()) {
+    const HalfSpace side = half_space_at(wall, x);
+    EXPECT_NEAR(dot(side.normal, side.normal), 1, 1e-15);
+    EXPECT_NEAR(dot(side.normal, x) - side.offset, WallDomain({wall}).distance(x), 1e-14);
+  }
+  const HalfSpace tip = half_space_at(shapes.walls().back(), behind);
+  EXPECT_NEAR(dot(tip.normal, behind) - tip.offset, std::sqrt(2.0), 1e-14);
 }
 
 TEST(WallDomain, RefusesShapesThatAreNone) {

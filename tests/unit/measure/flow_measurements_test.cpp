@@ -37,6 +37,7 @@ struct ShearFlow {
          scalar("mean_diameter", [](const Vec3&) { return 8e-4; }),
          scalar("temperature", [=, this](const Vec3& x) { return temperature(plane(x)); }),
          scalar("pressure_floor", [](const Vec3&) { return 0; }),
+         scalar("rotational_fluctuation", [](const Vec3&) { return 10000; }),
          {"velocity", 3, [](const Vec3&, std::span<double> out) { out[0] = out[1] = out[2] = 0; }},
          {"velocity_gradient", 9,
           [=, this](const Vec3& x, std::span<double> out) {
@@ -94,6 +95,24 @@ TEST(FluidityMeasurement, RecoversTheLawOfItsFields) {
       EXPECT_NEAR(column_of(table, "fit")[n], column_of(table, "gd_over_dv")[n], 1e-4);
       EXPECT_EQ(column_of(table, "law_3")[n], zhang_kamrin_law(column_of(table, "phi")[n]));
     }
+  }
+}
+
+// (A24) and (A25) with g = 20/0.4 and δω = 100.
+TEST(FluidityMeasurement, TellsTheRatiosToTheSpin) {
+  const MeasurementInfo info = fluidity_measurements().front();
+  OptionValues options = testing::defaults_of(info);
+  EXPECT_THAT(info.needs(options).fields, ::testing::Not(::testing::Contains("rotational_fluctuation")));
+  options["spin"] = true;
+  EXPECT_THAT(info.needs(options).fields, ::testing::Contains("rotational_fluctuation"));
+  const ShearFlow flow = fluid_flow(fluidity_fits[3].law, 0.52, 0.60);
+  std::vector<OutputFields> outputs;
+  outputs.push_back(flow.output());
+  const Table table = measured(info, options, outputs).front();
+  for (std::size_t n = 0; n < planes; ++n) {
+    EXPECT_NEAR(column_of(table, "g_over_domega")[n], 0.5, 1e-6);
+    const double dv_over_d_domega = std::sqrt(flow.temperature(static_cast<double>(n))) / (8e-4 * 100);
+    EXPECT_NEAR(column_of(table, "dv_over_d_domega")[n], dv_over_d_domega, 1e-6 * dv_over_d_domega);
   }
 }
 

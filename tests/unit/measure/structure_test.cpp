@@ -29,8 +29,8 @@ OptionValues defaults(const MeasurementInfo& info) {
   return values;
 }
 
-std::vector<Table> measure(const std::string& name, const std::vector<Frame>& frames,
-                           const OptionValues& changed = {}) {
+std::vector<Table> measure(const std::string& name, const std::vector<Frame>& frames, const OptionValues& changed = {},
+                           const WallDomain& walls = {}) {
   const MeasurementInfo info = info_of(name);
   OptionValues options = defaults(info);
   for (const auto& [key, value] : changed) options[key] = value;
@@ -38,7 +38,7 @@ std::vector<Table> measure(const std::string& name, const std::vector<Frame>& fr
   const Lattice lattice(1, {0, 0, 0});
   const StageSettings stages;
   const Box box = frames.empty() ? Box{{0, 0, 0}, {1, 1, 1}, {}} : frames[0].box;
-  const auto m = info.make({options, stages, lattice, LucyKernel(3), box, std::nullopt});
+  const auto m = info.make({options, stages, lattice, LucyKernel(3), box, std::nullopt, walls});
   for (const Frame& frame : frames) m->add(frame);
   return m->tables();
 }
@@ -225,6 +225,39 @@ TEST(Voronoi, LeavesOutGrainsBehindFacesAndSaysSo) {
   ASSERT_EQ(table.remarks.size(), 1U);
   EXPECT_TRUE(table.remarks[0].starts_with("1 times")) << table.remarks[0];
   EXPECT_GT(number(table, "at_faces").value, 0);
+}
+
+// Without walls the cells of the outer layers count for nothing, and here that is all of them.
+TEST(Voronoi, CountsCellsThatEndAtWalls) {
+  Frame f = hexagonal_layer(6).frame();
+  f.box.lo[2] = -4;
+  f.particles.position[2][5] = -2;
+  const WallDomain walls({{Wall::Shape::plane, {0, 0, 0}, {0, 0, 1}}, {Wall::Shape::plane, {0, 0, 1}, {0, 0, -1}}});
+  const std::vector<Table> within = measure("voronoi", {f}, {}, walls), open = measure("voronoi", {f});
+  EXPECT_EQ(number(within[0], "at_faces").value, 0);
+  EXPECT_EQ(number(within[0], "at_walls").value, 1);
+  // 71 grains in the room of 72 that are pi/6/sqrt(3/4) of it.
+  EXPECT_NEAR(number(within[0], "phi").value, std::numbers::pi / 6 / std::sqrt(0.75) * 71 / 72, 1e-9);
+  ASSERT_EQ(within[0].remarks.size(), 1U);
+  EXPECT_EQ(within[0].remarks[0], "1 times a grain lay behind a wall: it has no cell.");
+  EXPECT_EQ(number(open[0], "at_faces").value, 1);
+  EXPECT_TRUE(std::isnan(number(open[0], "at_walls").value));
+}
+
+// Places of windows a diameter apart across x and z, and anywhere along y: 6 x 6 x 8 within the outermost centres, of
+// which 15 x 8 keep their radius away from the tilted plane, x + z >= 7.5 + sqrt(2).
+TEST(Voronoi, LeavesOutWindowsThatReachBehindAWall) {
+  Scene s;
+  s.box = {{0, 0, 0}, {8, 8, 8}, {false, true, false}};
+  for (int i = 0; i < 8; ++i)
+    for (int j = 0; j < 8; ++j)
+      for (int k = 0; k < 8; ++k) s.add({i + 0.5, j + 0.5, k + 0.5}, 0.5);
+  const WallDomain walls({{Wall::Shape::plane, {7.5, 0, 0}, {1, 0, 1}},
+                          {Wall::Shape::plane, {8, 0, 8}, {-1, 0, 0}},
+                          {Wall::Shape::plane, {8, 0, 8}, {0, 0, -1}}});
+  const std::vector<Table> tables = measure("voronoi", {s.frame()}, {{"window", 1.0}}, walls);
+  EXPECT_EQ(number(tables[1], "windows").value, 15 * 8);
+  EXPECT_EQ(number(tables[0], "at_faces").value, 0);
 }
 
 TEST(Voronoi, RefusesTwoGrainsAtOnePlace) {
