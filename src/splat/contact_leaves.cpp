@@ -25,6 +25,7 @@ ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, c
   const Buckets& buckets = set.buckets();
   if (buckets.point.size() > std::numeric_limits<std::int32_t>::max()) throw std::invalid_argument("too many contacts");
   for (int n = 0; n <= 8; ++n) rules_.emplace_back(n == 0 ? std::span<const LineNode>{} : set.rule(n));
+  rules_[1].has_curvature = set.has_curvature();
   find_scales();
   records_.room(buckets.point.size() * stride_);
   if (set.points_used().size() > 1) points_.resize(buckets.point.size());
@@ -221,7 +222,7 @@ void ContactLeaves::sum_in_double(const Coord& origin, int offset, ContactWork& 
     const std::uint32_t e = work.candidates.entry[static_cast<std::size_t>(k)];
     const std::size_t piece = set_.buckets().point[e];
     const double w = set_.weight(piece, from_middle(voxel_at(origin, offset), e));
-    if (!(w > 0)) continue;
+    if (w == 0) continue;
     for (const std::size_t c : work.again) values[c * leaf_size] += set_.value(piece, c) * w;
   }
 }
