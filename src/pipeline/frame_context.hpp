@@ -93,6 +93,7 @@ class FrameContext : public FrameView {
   const std::shared_ptr<const Topology>& particle_leaves(const Halo& halo);
   const std::shared_ptr<const Topology>& contact_leaves(const SplatGroup& group);
   void splat_particles(const SplatGroup& group, const Started& started, const Buckets& buckets, WindowSums& sums);
+  LeafBuffers splat_buffered(const SplatGroup& group, const Started& started, const Buckets& buckets) const;
   void splat(const SplatGroup& group, const Started& started, std::size_t bytes_per_leaf, WindowSums& sums);
   /// What takes the sums of a group's leaves: the sums of the window, and a buffer for the moments that are kept.
   LeafConsumer consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology, WindowSums& sums);

@@ -142,6 +142,14 @@ double BranchSet::value(std::size_t piece, std::size_t channel) const {
   return plan.whole ? values_.of(b)[channel] + values_.of(b + 1)[channel] : values_.of(b)[channel] / plan.parts;
 }
 
+std::vector<double> BranchSet::values_of_pieces() const {
+  std::vector<double> values(source_.size() * channels());
+  parallel_for(source_.size(), [&](std::size_t piece) {
+    for (std::size_t c = 0; c < channels(); ++c) values[piece * channels() + c] = value(piece, c);
+  });
+  return values;
+}
+
 Vec3 BranchSet::from_start(const Vec3& d, const Vec3& arm) const {
   // x - x_α = x - middle - a/2
   const double h = lattice_.voxel();

@@ -37,6 +37,8 @@ class BranchSet {
 
   Vec3 arm(std::size_t piece) const;
   double value(std::size_t piece, std::size_t channel) const;
+  /// [piece][channel]; empty where pieces are half branches, whose values were given.
+  std::vector<double> values_of_pieces() const;
 
   /// The points of the rule that a piece takes, 0 for the exact integral.
   int points(std::size_t piece) const { return plans_.empty() ? only_points_ : plans_[branch(piece)].points; }
