@@ -38,11 +38,34 @@ def at_rest(folder, edge, frames):
 
 
 def in_shear(folder, edge, height, rate, frames):
-    """The same with u = rate z along x, periodic along x and y."""
+    """The same with u = ω = rate z along x, periodic along x and y."""
     random, places = np.random.default_rng(2), lattice(edge, height)
     mean = np.outer(rate * places[:, 2], [1, 0, 0])
     write(folder, "shear", places, [edge, edge, height], [True, True, False],
-          [(mean + fluctuations(random, len(places)), fluctuations(random, len(places))) for _ in range(frames)])
+          [(mean + fluctuations(random, len(places)), mean + fluctuations(random, len(places))) for _ in range(frames)])
+
+
+def column(folder, edge, height):
+    """Grains of mass 1 at rest under a weight of 1 each, stacked on a layer of wall grains of type 2 whose centres lie at z = 0.5, with
+    the contacts that bear them. Returns the weight on the wall by area."""
+    places = lattice(edge, height)
+    box = [edge, edge, height + 1]
+    write(folder, "column", places, box, [True, True, False], [(0 * places, 0 * places)])
+    dump = folder / "column0.dump"
+    rows = dump.read_text().splitlines()
+    layers = places[:, 2] - 0.5
+    first = len(rows) - len(places)
+    rows[first:] = [row.replace(" 1 ", " 2 ", 1) if layer == 0 else row for row, layer in zip(rows[first:], layers)]
+    dump.write_text("\n".join(rows) + "\n")
+    pairs = [(i, i + 1) for i in range(len(places) - 1) if layers[i + 1] == layers[i] + 1]
+    with open(folder / "column_contacts0.dump", "w") as out:
+        out.write(f"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ENTRIES\n{len(pairs)}\nITEM: BOX BOUNDS pp pp ff\n")
+        out.writelines(f"0 {length}\n" for length in box)
+        out.write("ITEM: ENTRIES id1 id2 fx fy fz px py pz\n")
+        for below, above in pairs:
+            x, y, z = places[below]
+            out.write(f"{above + 1} {below + 1} 0 0 {height - 1 - layers[below]:.9g} {x:.9g} {y:.9g} {z + 0.5:.9g}\n")
+    return height - 1
 
 
 def in_a_wave(folder, name, edge, height, length, spacing):
