@@ -18,6 +18,7 @@ WAVELENGTH, WAVE_CUTOFF, WAVE_EDGE, WAVE_HEIGHT = 12, 3, 6, 24
 SPACINGS = {"wave": 1, "fine": 1 / 3}  # of grains; the edge of material is as smooth as there are layers of them
 PER_CUTOFF = [2, 3, 4, 6]  # voxels; the edge is a whole number of each
 WEIGHT = 9.81
+HEAVY, MIXTURE_EDGE, MIXTURE_HEIGHT = 4, 24, 24  # of the grains of two materials
 SIZES = {"small": "[0, 7.7e-4]", "middle": "[7.7e-4, 8.2e-4]", "large": "[8.2e-4, .inf]"}
 HALF_STEP = ("{law: hooke, youngs_modulus: 1e9, poisson_ratio: 0.5, restitution: 0.1, characteristic_velocity: 1, friction: 0.4, "
              "still_types: [2], whole_steps: [60000]}")
@@ -281,6 +282,26 @@ def half_step(options, folder, images):
 
 # Species
 
+def weightings(options, folder, panel):
+    """Draws the velocity of two materials over the height by either weighting; returns its rms differences from what is expected."""
+    scenes.mixture(folder, MIXTURE_EDGE, MIXTURE_HEIGHT, HEAVY)
+    share = lambda z: z / MIXTURE_HEIGHT
+    expected = {"volume": share, "mass": lambda z: HEAVY * share(z) / (1 + (HEAVY - 1) * share(z))}
+    far = {}
+    for (weighting, value), colour in zip(expected.items(), (BROWN, GREEN)):
+        path = pipeline(folder, "mixture", 3, 1, ["phi", "velocity"])
+        with run(options, path, folder, stages__velocity__weighting=weighting) as result:
+            z, phi, u = result.axis("z"), result.values("phi"), result.values("velocity")[..., 0]
+        inside = (z > 3) & (z < MIXTURE_HEIGHT - 3)  # where the kernel is whole
+        found = np.nansum(phi * u, axis=(1, 2))[inside] / np.sum(phi, axis=(1, 2))[inside]
+        panel.plot(z[inside], found, "o", color=colour, markersize=3, label=f"weighting: {weighting}")
+        panel.plot(z[inside], value(z[inside]), color=colour, linewidth=0.8)
+        far[weighting] = np.sqrt(np.mean((found - value(z[inside])) ** 2))
+    panel.set(xlabel="height z/d", ylabel="u of two materials")
+    panel.legend(fontsize=7)
+    return far
+
+
 def species(options, folder, images):
     """Fields of three size classes of the shear cell against those of all grains."""
     names = {"phi": 1, "velocity": 3, "temperature": 1, "stress": 9}
@@ -289,7 +310,7 @@ def species(options, folder, images):
     with run(options, ROOT / "pipelines/shear_cell.yaml", folder, output__fields=f"[{','.join(fields)}]", species=classes) as result:
         value = {name: result.values(name).astype(float) for name in fields}
         z = result.axis("z") / 0.8e-3
-    figure, (stack, rest) = plt.subplots(1, 2, figsize=(8, 3.4), layout="constrained")
+    figure, (stack, rest, weights) = plt.subplots(1, 3, figsize=(11, 3.4), layout="constrained")
     below = np.zeros(len(z))
     for size, colour in zip(SIZES, (BROWN, GREEN, VIOLET)):
         above = below + np.nanmean(value[f"phi_{size}"], axis=(1, 2))
@@ -310,8 +331,10 @@ def species(options, folder, images):
         largest[name] = gap.max()
     rest.set(yscale="log", xlabel="height z/d", ylabel="largest |sum of species - all| / largest |all|")
     rest.legend(fontsize=7)
+    far = weightings(options, folder, weights)
     finish(figure, images / "species.png")
-    return "Largest difference of the sum, of the largest value: " + ", ".join(f"{name} {gap:.0e}" for name, gap in largest.items()) + "."
+    return ("Largest difference of the sum, of the largest value: " + ", ".join(f"{name} {gap:.0e}" for name, gap in largest.items()) + ".\n"
+            + "Velocity of two materials, rms difference of planes from the expected: " + ", ".join(f"{name} {gap:.3f}" for name, gap in far.items()) + ".")
 
 
 def measure(options, folder, images):

@@ -6,7 +6,6 @@
 #include <map>
 #include <numbers>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "grainvdb/run.hpp"
@@ -175,12 +174,13 @@ class Tuning {
     return {std::move(result), clock_() - start};
   }
 
-  /// Of all frames, at the planes of a pipeline.
+  /// Of the current setting, at the planes of another.
   const std::vector<Table>& exact_tables(const Pipeline& pipeline) {
-    const auto [it, is_new] = exact_.try_emplace({pipeline.voxel, pipeline.origin, pipeline.cutoff});
+    const auto [it, is_new] = exact_.try_emplace({pipeline.voxel, pipeline.origin});
     if (is_new) {
-      Pipeline exact = exact_profile(pipeline);
-      exact.frames = current_.frames;
+      Pipeline exact = exact_profile(current_);
+      exact.voxel = pipeline.voxel;
+      exact.origin = pipeline.origin;
       it->second = measured_run(exact, make_plan(exact), source_, {}).tables;
     }
     return it->second;
@@ -250,7 +250,7 @@ class Tuning {
   double diameter_ = 0;
   ReferencePoints points_;
   TracerPaths reference_tracers_;
-  std::map<std::tuple<double, Vec3, double>, std::vector<Table>> exact_;  // by voxel, origin and cutoff
+  std::map<std::pair<double, Vec3>, std::vector<Table>> exact_;  // by voxel and origin
   std::size_t planned_ = 0;
   std::size_t done_ = 0;
   TuneReport report_;
