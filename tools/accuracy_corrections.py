@@ -18,6 +18,7 @@ WAVELENGTH, WAVE_CUTOFF, WAVE_EDGE, WAVE_HEIGHT = 12, 3, 6, 24
 SPACINGS = {"wave": 1, "fine": 1 / 3}  # of grains; the edge of material is as smooth as there are layers of them
 PER_CUTOFF = [2, 3, 4, 6]  # voxels; the edge is a whole number of each
 WEIGHT = 9.81
+HEAVY, MIXTURE_EDGE, MIXTURE_HEIGHT = 4, 24, 24  # of the grains of two materials
 SIZES = {"small": "[0, 7.7e-4]", "middle": "[7.7e-4, 8.2e-4]", "large": "[8.2e-4, .inf]"}
 HALF_STEP = ("{law: hooke, youngs_modulus: 1e9, poisson_ratio: 0.5, restitution: 0.1, characteristic_velocity: 1, friction: 0.4, "
              "still_types: [2], whole_steps: [60000]}")
@@ -98,20 +99,25 @@ def temperature(options, folder, images):
     rest = temperatures(options, folder, "rest", "temperature", everywhere, list(MODES)[:4])
     shear = temperatures(options, folder, "shear", "temperature", inside, MODES)
     spin = temperatures(options, folder, "rest", "rotational_fluctuation", everywhere, list(MODES)[:4])
-    figure, panels = plt.subplots(1, 3, figsize=(10, 3.5), layout="constrained")
+    spin_shear = temperatures(options, folder, "shear", "rotational_fluctuation", inside, MODES)
+    figure, grid = plt.subplots(2, 2, figsize=(8, 6.4), layout="constrained")
+    panels = list(grid.T.flat)
     draw_biases(panels[0], rest, "T of a packing without flow")
     draw_biases(panels[1], shear, f"T in shear, γ̇d/√T = {RATE}")
     draw_biases(panels[2], spin, "δω² of a packing without flow")
+    draw_biases(panels[3], spin_shear, f"δω² in shear of spin, d|∂ω|/δω = {RATE}")
     c = np.linspace(CUTOFFS[0], CUTOFFS[-1], 50)
     a, b = 105 / 96 / c**3 / scenes.PHI, 455 / (176 * np.pi * c**3) * (np.pi / 6) / scenes.PHI
     for panel in (panels[0], panels[2]):
         panel.plot(c, 100 * (b - 2 * a), color=GREY, linewidth=0.8, label="1 - 2a + b of the formula")
-    panels[0].set_ylabel("found less true value [%]")
+    for panel in panels[:2]:
+        panel.set_ylabel("found less true value [%]")
     panels[0].legend(fontsize=6.5)
     panels[1].legend(fontsize=6.5)
     finish(figure, images / "temperature_bias.png")
     at = CUTOFFS.index(3)
-    return [(f"{field}, {mode}", *each[at]) for field, found in (("T at rest", rest), ("T in shear", shear), ("δω² at rest", spin))
+    return [(f"{field}, {mode}", *each[at]) for field, found in (("T at rest", rest), ("T in shear", shear), ("δω² at rest", spin),
+                                                               ("δω² in shear of spin", spin_shear))
             for mode, each in found.items()]
 
 
@@ -171,6 +177,76 @@ def gradient(options, folder, images):
                               for n, *row in zip(PER_CUTOFF, central, derived, one_sided, naive, kernel)])
 
 
+# Walls
+
+BALANCES = {  # name: wall_contacts, whether wall_force enters, colour, style
+    "stress to the centres of wall grains, no wall_force": ("include", False, BROWN, "--"),
+    "stress to the wall, no wall_force": ("exclude", False, VIOLET, "--"),
+    "stress to the wall and wall_force": ("exclude", True, GREEN, "-"),
+}
+
+
+def mobile_grains(path):
+    """Columns by name of the mobile grains in a dump of the cell."""
+    dump = Dump(path, "ATOMS")
+    at = dump.columns.index("type")
+    rows = np.array([[float(word) for word in row] for row in dump.rows if row[at] == "1"])
+    return dict(zip(dump.columns, rows.T))
+
+
+def inertia_above(z, cutoff):
+    """∫_z Σ F_α W dV of the mobile grains of the cell, F_α the force on each, which accelerates it; mean over the frames."""
+    def beyond(height):  # the part of a kernel there that lies above 0
+        x = np.minimum(np.abs(height) / cutoff, 1)
+        half = 21 / 16 * x * (1 + x**2 * (-5 / 3 + x**2 * (3 + x * (-8 / 3 + 5 / 7 * x))))
+        return 0.5 + np.sign(height) * half
+    frames = [mobile_grains(path) for path in sorted(SAMPLE.glob("dump*.liggghts"))]
+    return np.mean([[np.sum(grains["fz"] * beyond(grains["z"] - height)) for height in z] for grains in frames], axis=0)
+
+
+def missing(options, path, folder, contacts, with_force, gravity, inertia, **keys):
+    """Heights, and σ_zz(z) + ∫_z (ρg - f_z + force that accelerates) dz of means over planes, of the weight by area: 0 where the momentum
+    above z is balanced. σ is the contact stress, as the force is that on moving grains. Integrals are by the trapezoidal rule with
+    the term of its ends."""
+    fields = "[density,contact_stress,wall_force]"
+    with run(options, path, folder, output__fields=fields, stages__contact_stress__wall_contacts=contacts, **keys) as result:
+        z, h = result.axis("z"), result.voxel
+        planes = lambda values: np.nan_to_num(values.astype(float)).mean(axis=(1, 2))
+        density, stress, force = (planes(result.values(name)[component]) for name, component in
+                                  (("density", ...), ("contact_stress", (..., 8)), ("wall_force", (..., 2))))
+        area = h**2 * len(result.axis("x")) * len(result.axis("y"))
+    load = gravity * density - (force if with_force else 0)
+    above = h * (np.cumsum(load[::-1])[::-1] - load / 2) + h**2 / 12 * np.gradient(load, h)
+    return z, (stress + above + inertia(z) / area) / (gravity * density.sum() * h)
+
+
+def wall_balance(options, folder, images):
+    """What is missing in the balance of momentum at a wall of grains, with and without wall_force."""
+    scenes.column(folder, 6, 12)
+    contacts = "{files: column_contacts0.dump, columns: {id1: id1, id2: id2, force: [fx, fy, fz], point: [px, py, pz]}}"
+    column = folder / "column.yaml"
+    column.write_text(f"grainvdb: 1\ninput: {{particles: column0.dump, units: lj, contacts: {contacts}}}\nselect: {{types: [1]}}\n"
+                      "lattice: {voxel: 0.25}\nkernel: {cutoff: 3}\noutput: {fields: [phi]}\n")
+    figure, panels = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
+    cell = {"walls__types": "[2, 3]", "input__contacts__half_step": HALF_STEP, "lattice__voxel": "0.2e-3"}
+    scenes_of = [("grains at rest on a wall of grains", column, 1, 1, 1, lambda z: 0 * z, {}),
+                 ("shear cell", ROOT / "pipelines/shear_cell.yaml", WEIGHT, 0.8e-3, 0, lambda z: inertia_above(z, 2.4e-3), cell)]
+    lines = ["| largest part of the weight that is missing | " + " | ".join(BALANCES) + " |", "|---|" + "---|" * len(BALANCES)]
+    for panel, (title, path, gravity, diameter, wall, inertia, keys) in zip(panels, scenes_of):
+        largest = []
+        for name, (ends, with_force, colour, style) in BALANCES.items():
+            z, part = missing(options, path, folder, ends, with_force, gravity, inertia, **keys)
+            panel.plot(z / diameter - wall, part, style, color=colour, label=name)
+            largest.append(np.abs(part).max())
+        panel.axvline(0, color=GREY, linewidth=0.8)
+        panel.set(title=title, xlabel="height above the wall / d")
+        lines.append(f"| {title} | " + " | ".join(f"{value:.1e}" for value in largest) + " |")
+    panels[0].set_ylabel("missing part of the weight")
+    panels[0].legend(fontsize=7)
+    finish(figure, images / "wall_balance.png")
+    return "\n".join(lines)
+
+
 # Half a step
 
 def residuals(options, folder, **keys):
@@ -181,11 +257,9 @@ def residuals(options, folder, **keys):
         forces = [np.nansum(result.values("wall_force", n), axis=(0, 1, 2), dtype=float) * result.voxel**3 for n in range(len(result.times))]
     paths = sorted(SAMPLE.glob("dump*.liggghts"))
     for path, force in zip(paths, forces):
-        dump = Dump(path, "ATOMS")
-        at = {name: n for n, name in enumerate(dump.columns)}
-        mobile = [row for row in dump.rows if row[at["type"]] == "1"]
-        total = np.array([[float(row[at[axis]]) for axis in ("fx", "fy", "fz")] for row in mobile]).sum(axis=0)
-        weight = WEIGHT * sum(float(row[at["mass"]]) for row in mobile)
+        mobile = mobile_grains(path)
+        total = np.array([mobile[axis].sum() for axis in ("fx", "fy", "fz")])
+        weight = WEIGHT * mobile["mass"].sum()
         found.append((total + [0, 0, weight] - force) / weight)
     return [path.stem[4:] for path in paths], np.array(found)
 
@@ -208,6 +282,26 @@ def half_step(options, folder, images):
 
 # Species
 
+def weightings(options, folder, panel):
+    """Draws the velocity of two materials over the height by either weighting; returns its rms differences from what is expected."""
+    scenes.mixture(folder, MIXTURE_EDGE, MIXTURE_HEIGHT, HEAVY)
+    share = lambda z: z / MIXTURE_HEIGHT
+    expected = {"volume": share, "mass": lambda z: HEAVY * share(z) / (1 + (HEAVY - 1) * share(z))}
+    far = {}
+    for (weighting, value), colour in zip(expected.items(), (BROWN, GREEN)):
+        path = pipeline(folder, "mixture", 3, 1, ["phi", "velocity"])
+        with run(options, path, folder, stages__velocity__weighting=weighting) as result:
+            z, phi, u = result.axis("z"), result.values("phi"), result.values("velocity")[..., 0]
+        inside = (z > 3) & (z < MIXTURE_HEIGHT - 3)  # where the kernel is whole
+        found = np.nansum(phi * u, axis=(1, 2))[inside] / np.sum(phi, axis=(1, 2))[inside]
+        panel.plot(z[inside], found, "o", color=colour, markersize=3, label=f"weighting: {weighting}")
+        panel.plot(z[inside], value(z[inside]), color=colour, linewidth=0.8)
+        far[weighting] = np.sqrt(np.mean((found - value(z[inside])) ** 2))
+    panel.set(xlabel="height z/d", ylabel="u of two materials")
+    panel.legend(fontsize=7)
+    return far
+
+
 def species(options, folder, images):
     """Fields of three size classes of the shear cell against those of all grains."""
     names = {"phi": 1, "velocity": 3, "temperature": 1, "stress": 9}
@@ -216,7 +310,7 @@ def species(options, folder, images):
     with run(options, ROOT / "pipelines/shear_cell.yaml", folder, output__fields=f"[{','.join(fields)}]", species=classes) as result:
         value = {name: result.values(name).astype(float) for name in fields}
         z = result.axis("z") / 0.8e-3
-    figure, (stack, rest) = plt.subplots(1, 2, figsize=(8, 3.4), layout="constrained")
+    figure, (stack, rest, weights) = plt.subplots(1, 3, figsize=(11, 3.4), layout="constrained")
     below = np.zeros(len(z))
     for size, colour in zip(SIZES, (BROWN, GREEN, VIOLET)):
         above = below + np.nanmean(value[f"phi_{size}"], axis=(1, 2))
@@ -237,12 +331,15 @@ def species(options, folder, images):
         largest[name] = gap.max()
     rest.set(yscale="log", xlabel="height z/d", ylabel="largest |sum of species - all| / largest |all|")
     rest.legend(fontsize=7)
+    far = weightings(options, folder, weights)
     finish(figure, images / "species.png")
-    return "Largest difference of the sum, of the largest value: " + ", ".join(f"{name} {gap:.0e}" for name, gap in largest.items()) + "."
+    return ("Largest difference of the sum, of the largest value: " + ", ".join(f"{name} {gap:.0e}" for name, gap in largest.items()) + ".\n"
+            + "Velocity of two materials, rms difference of planes from the expected: " + ", ".join(f"{name} {gap:.3f}" for name, gap in far.items()) + ".")
 
 
 def measure(options, folder, images):
     """Draws all charts; returns the texts by the names of their places in docs/accuracy.md."""
     subprocess.run([sys.executable, ROOT / "tools/wall-profiles", "--command", options.command, "--picture", images / "walls"], check=True)
     return {"temperature_bias": temperature_table(temperature(options, folder, images)), "gradients": gradient(options, folder, images),
+            "wall_balance": wall_balance(options, folder, images),
             "half_step": half_step(options, folder, images), "species": species(options, folder, images)}

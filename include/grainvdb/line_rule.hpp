@@ -24,6 +24,14 @@ inline constexpr double lucy_rule_error = 3e-5;
 /// The longest branch, in units of the cutoff, for which lucy_rule(n) keeps to lucy_rule_error.
 double longest_branch(int n);
 
+/// The longest branch, in units of the cutoff, that LineIntegral::midpoint_curvature takes in one piece, and the error
+/// in units of W(0) that it keeps by it: (|a|/c)³/4, which is 1.16e-3 at a sixth of the cutoff.
+inline constexpr double longest_curved_branch = 0.2;
+inline constexpr double curved_branch_error = 2e-3;
+
+/// Into how many equal parts it divides a branch of the given length (in units of the cutoff).
+int curved_branch_parts(double length);
+
 /// How a branch of the given length (in units of the cutoff) is integrated to within lucy_rule_error: in `parts` equal
 /// parts by lucy_rule(points) each. One part and the fewest points that do; only branches beyond longest_branch(8) are
 /// divided.

@@ -21,9 +21,10 @@ using MomentPtr = std::shared_ptr<const Moment>;
 /// How the line integral of W along a half branch of a contact is evaluated.
 struct LineIntegral {
   enum class Method {
-    adaptive,  ///< as few points as keep the error of every half branch within 3e-5 W(0)
-    exact,     ///< closed form, in double precision
-    gauss      ///< Gauss-Legendre rule
+    adaptive,           ///< as few points as keep the error of every half branch within 3e-5 W(0)
+    exact,              ///< closed form, in double precision
+    gauss,              ///< Gauss-Legendre rule
+    midpoint_curvature  ///< one point and the second derivative there, on parts of at most longest_curved_branch
   };
   Method method = Method::adaptive;
   int gauss_points = 0;  ///< 1 … 8 for Method::gauss
@@ -31,6 +32,7 @@ struct LineIntegral {
   static constexpr LineIntegral adaptive() { return {}; }
   static constexpr LineIntegral exact() { return {Method::exact, 0}; }
   static constexpr LineIntegral gauss(int points) { return {Method::gauss, points}; }
+  static constexpr LineIntegral midpoint_curvature() { return {Method::midpoint_curvature, 0}; }
   bool operator==(const LineIntegral&) const = default;
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "grainvdb/accumulation.hpp"
 #include "grainvdb/error.hpp"
 #include "grainvdb/frame_source.hpp"
 #include "grainvdb/options.hpp"
@@ -73,8 +74,9 @@ struct Pipeline {
   double voxel = 0;                             ///< h [length]
   Vec3 origin{};                                ///< of the lattice [length]
   double cutoff = 0;                            ///< c of the kernel [length]
-  std::vector<Scale> scales;                    ///< to run at, in place of cutoff and voxel; empty: at these
-  std::size_t window = 0;                       ///< frames per time average; 0: all frames in one
+  Accumulation accumulation = Accumulation::shifted;
+  std::vector<Scale> scales;            ///< to run at, in place of cutoff and voxel; empty: at these
+  std::size_t window = 0;               ///< frames per time average; 0: all frames in one
   std::size_t window_step = 0;          ///< frames from the beginning of one average to that of the next; 0: as window
   std::size_t blocks = 10;              ///< of frames, from whose differences standard errors are estimated
   std::optional<Until> until;           ///< ends the average before the last frame

@@ -17,6 +17,10 @@ namespace grainvdb {
 /// setting: there the setting's field is interpolated trilinearly, as it is read in use, so that the voxel size counts.
 /// Sums run over the points at which both have a value, and over all components; fields that are ratios are weighted
 /// with the reference's phi, where it can be had, since they vary wildly where there is next to nothing.
+///
+/// "profile.phi" and the like are of planes: the averages of measure.profile or measure.plane_profile against the exact
+/// ones of all frames at the same planes. "position" is of tracers: where they are at the last
+/// sample that both runs have, against the reference; rms and largest are distances in mean diameters.
 struct FieldError {
   std::string field;
   double rms = 0;             ///< √(Σ|f - r|²/Σ|r|²); 0 where both are zero, infinite where only r is
@@ -28,9 +32,10 @@ struct FieldError {
 /// One setting that was tried.
 struct Trial {
   std::vector<std::string> set;      ///< "key=value" where it differs from the current setting; none: the current one
-  std::vector<double> seconds{};     ///< of every repeat: reading, splatting, averaging and deriving; not writing
+  std::vector<double> seconds{};     ///< of every repeat: all but writing
   std::vector<FieldError> errors{};  ///< of the wanted fields that can be compared, in their order
   std::string refused{};             ///< why it cannot be run; empty when it was
+  std::size_t knobs = 0;             ///< that are turned
 
   double best_seconds() const;
   double worst_seconds() const;
@@ -42,6 +47,7 @@ struct Trial {
 struct Knob {
   std::string key;
   std::vector<std::string> values;
+  std::vector<std::string> along{};  ///< "key=value" that belong to each of the values
 };
 
 struct TuneRequest {
@@ -75,16 +81,18 @@ struct TuneReport {
 };
 
 /// What is tried unless the user says otherwise: the voxel size (×½ … 2, as periods allow), the line integral, the
-/// modes of temperature and spin fluctuation, the gradient, the number of frames; each only where a wanted field
-/// depends on it.
+/// modes of temperature and spin fluctuation, the gradient, how sums are added up, the interpolation of the tracers,
+/// the way to the profile, the number of frames; each only where something that is compared depends on it.
 std::vector<Knob> default_knobs(const Pipeline& pipeline, const Plan& plan, FrameSource& source);
 
 /// Runs the reference, the current setting, every value of every knob by itself, and then the combinations that
 /// promise to be the cheapest within the tolerances. The reference has voxels of half the size on a lattice shifted
-/// by a fraction of them, line integrals in closed form and in double, and gradients of the kernel. The output is
-/// averaged over all frames in one window. Throws ConfigError for a setting that cannot be the current or the reference
-/// one and for a tolerance of a field that is not compared (with "did you mean"); LimitError where more than
-/// `most_runs` would be needed; and what running the pipeline throws.
+/// by a fraction of them, line integrals in closed form, sums in double, gradients of the kernel, and tracers
+/// carried by splines. The output is averaged over all frames in one window; where tracers go through
+/// frames the windows are those of the pipeline, and fields are compared at the last. Measurements but those of
+/// profiles are left out. Throws ConfigError for a setting that cannot be the current or the reference one and for a
+/// tolerance of a field that is not compared (with "did you mean"); LimitError where more than `most_runs` would be
+/// needed; and what running the pipeline throws.
 TuneReport tune(const TuneRequest& request, FrameSource& source);
 
 /// The largest ratio of an error to its tolerance; without tolerances the largest error. Infinite when refused.

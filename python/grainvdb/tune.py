@@ -26,7 +26,8 @@ def knob(row: Row) -> str:
     keys = [part.split("=")[0].split(".") for part in row["setting"].split()]
     if not keys:
         return "as it is"
-    return "several" if len(keys) > 1 else ".".join(keys[0][-2:])
+    profile = all(key[0] == "measure" for key in keys)  # one measurement in place of another
+    return "several" if len(keys) > 1 and not profile else ".".join(keys[0][-2:])
 
 
 def front(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
@@ -56,7 +57,8 @@ def panel(rows: list[Row], field: str, colours: dict[str, object], ax: Axes) -> 
     if tolerance:
         ax.axhline(tolerance, color="black", linestyle=":", linewidth=1)
     positive = any(float(r["rms"]) > 0 for r in mine)
-    ax.set(title=field, xlabel="time [s]", ylabel="relative error", xscale="log", yscale="log" if positive else "linear")
+    error = "rms distance [d]" if field == "position" else "relative error"
+    ax.set(title=field, xlabel="time [s]", ylabel=error, xscale="log", yscale="log" if positive else "linear")
     ax.grid(alpha=0.3)
     return ax
 
@@ -66,8 +68,8 @@ def draw(rows: list[Row], most_panels: int = 12) -> matplotlib.figure.Figure:
     order = {row["field"]: row["tolerance"] == "" for row in rows}
     fields = sorted(order, key=lambda field: order[field])[:most_panels]
     knobs = list(dict.fromkeys(knob(row) for row in rows))  # the current setting's comes first
-    palette = matplotlib.colormaps["tab10"]
-    colours = {name: palette(k % 10) for k, name in enumerate(knobs)}
+    palette = matplotlib.colormaps["tab20"]
+    colours = {name: palette((2 * k + k // 10) % 20) for k, name in enumerate(knobs)}
     columns = min(3, len(fields))
     lines = -(-len(fields) // columns)
     figure, panels = plt.subplots(lines, columns, squeeze=False, figsize=(4.2 * columns, 3.2 * lines + 0.8),

@@ -163,7 +163,8 @@ void add_pipeline_arguments(CLI::App& command, PipelineArguments& arguments, con
   command.add_option(file.name, arguments.file, file.help)->required()->type_name(file.type);
   command
       .add_option("--set", arguments.overrides,
-                  std::string("Set a key of the file, e.g. ") + file.keys + "; wins over the file, may be repeated")
+                  std::string("Set a key of the file, e.g. ") + file.keys +
+                      "; SECTION=null leaves a section out; wins over the file, may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false)
       ->take_all();

@@ -26,13 +26,16 @@ namespace {
 constexpr const char* tune_footer = R"(Examples:
   grainvdb tune pipelines/shear_cell.yaml
   grainvdb tune pipelines/shear_cell.yaml --tolerance phi=1e-2,stress=3e-2
+  grainvdb tune my.yaml --tolerance position=0.1,profile.phi=1e-4
   grainvdb tune my.yaml --frames :3 --knobs lattice.voxel,frames --repeats 5
   grainvdb tune my.yaml --try stages.contact_stress.line_integral=gauss1,gauss2 --set output.fields=[stress]
 
 Each value is tried by itself, then the combinations that promise most. Errors are distances from a reference run with
-half the voxel, line integrals in closed form and gradients of the kernel; what the reference does otherwise can be set
-with --reference, e.g. --reference stages.temperature.mode=two_pass_profile. Take few frames and a part of the fields
-where the data are large: the reference takes long. Writes DIR/tune.csv and, with python3-matplotlib, DIR/tune.png.)";
+half the voxel, line integrals in closed form, sums in double and gradients of the kernel; what the reference does
+otherwise can be set with --reference, e.g. --reference kernel.accumulation=shifted. Where the pipeline has tracers,
+'position' is how far they end from those of the reference, in mean diameters; where it measures a profile,
+'profile.phi' and so on are the errors of averages over planes. Take few frames and a part of the fields where the data
+are large: the reference takes long. Writes DIR/tune.csv and, with python3-matplotlib, DIR/tune.png.)";
 
 struct TuneOptions {
   PipelineArguments pipeline;
@@ -173,7 +176,8 @@ void add_tune(CLI::App& app) {
   add_frames_option(*command, options->pipeline);
   command
       ->add_option("--tolerance", options->tolerance,
-                   "Largest relative error of a field; the fastest setting that keeps to all of them is proposed")
+                   "Largest relative error of a field, profile.FIELD or position; the fastest setting that keeps to all of them is "
+                   "proposed")
       ->type_name("FIELD=X,...")
       ->delimiter(',');
   command->add_option("--knobs", options->knobs, "Keys to try, of those tried by default")

@@ -7,9 +7,9 @@
 #include "bin/leaf_bounds.hpp"
 #include "grainvdb/stage.hpp"
 #include "pipeline/species_view.hpp"
+#include "splat/accumulate.hpp"
 #include "splat/own_weight.hpp"
 #include "splat/sample.hpp"
-#include "splat/second_moments.hpp"
 
 namespace grainvdb {
 namespace {
@@ -162,7 +162,7 @@ void FrameContext::splat(const SplatGroup& group, const Started& started, std::s
   if (planes_) {
     splat_on_planes(group, started, sums);
   } else if (started.contacts) {
-    started.contacts->sums(consumer(group, started.topology, sums));
+    started.contacts->sums(consumer(group, started.topology, sums), setting_.pipeline.accumulation);
   } else if (group.species()) {
     splat_particles(group, started, keep_points(*buckets_, particles().species, *group.species()), sums);
   } else {
@@ -186,19 +186,28 @@ void FrameContext::splat_on_planes(const SplatGroup& group, const Started& start
 
 void FrameContext::splat_particles(const SplatGroup& group, const Started& started, const Buckets& buckets,
                                    WindowSums& sums) {
+  const auto& [pipeline, lattice, kernel, wanted] = setting_;
   if (group.buffered()) {
-    const auto splat = group.kind() == Moment::Kind::particle_gradients ? splat_particle_gradients
-                       : group.kind() == Moment::Kind::particle_squares ? splat_particle_squares
-                                                                        : grainvdb::splat_particles;
-    keep(splat(setting_.lattice, setting_.kernel, buckets, started.topology, started.values, group.value_count()),
-         {group.moments.begin(), group.moments.begin() + group.asked_for}, sums);
+    keep(splat_buffered(group, started, buckets), {group.moments.begin(), group.moments.begin() + group.asked_for},
+         sums);
   } else if (group.kind() == Moment::Kind::second_moments) {
-    splat_second_moments(setting_.lattice, setting_.kernel, buckets, *started.topology, started.values,
-                         consumer(group, started.topology, sums));
+    accumulate_second_moments(pipeline.accumulation, lattice, kernel, buckets, *started.topology, started.values,
+                              consumer(group, started.topology, sums));
   } else {
-    splat_particles_fast(setting_.lattice, setting_.kernel, buckets, *started.topology, started.values, group.weight_of,
-                         consumer(group, started.topology, sums));
+    accumulate_particles(pipeline.accumulation, lattice, kernel, buckets, *started.topology, started.values,
+                         group.weight_of, consumer(group, started.topology, sums));
   }
+}
+
+LeafBuffers FrameContext::splat_buffered(const SplatGroup& group, const Started& started,
+                                         const Buckets& buckets) const {
+  const auto& [pipeline, lattice, kernel, wanted] = setting_;
+  const int values = group.value_count();
+  if (group.kind() == Moment::Kind::particle_gradients)
+    return splat_particle_gradients(lattice, kernel, buckets, started.topology, started.values, values);
+  if (group.kind() == Moment::Kind::particle_squares)
+    return splat_particle_squares(lattice, kernel, buckets, started.topology, started.values, values);
+  return accumulate_buffered(pipeline.accumulation, lattice, kernel, buckets, started.topology, started.values, values);
 }
 
 LeafConsumer FrameContext::consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology,

@@ -95,6 +95,7 @@ class FrameContext : public FrameView {
   const std::shared_ptr<const Topology>& contact_leaves(const SplatGroup& group);
   void splat_on_planes(const SplatGroup& group, const Started& started, WindowSums& sums);
   void splat_particles(const SplatGroup& group, const Started& started, const Buckets& buckets, WindowSums& sums);
+  LeafBuffers splat_buffered(const SplatGroup& group, const Started& started, const Buckets& buckets) const;
   void splat(const SplatGroup& group, const Started& started, std::size_t bytes_per_leaf, WindowSums& sums);
   /// What takes the sums of a group's leaves: the sums of the window, and a buffer for the moments that are kept.
   LeafConsumer consumer(const SplatGroup& group, const std::shared_ptr<const Topology>& topology, WindowSums& sums);

@@ -10,13 +10,14 @@
 namespace grainvdb {
 namespace {
 
-// Puts the value of an override in its place in the tree.
+// Puts the value of an override in its place in the tree. A section that is set to nothing is left out.
 void apply_override(ConfigNode& root, const std::string& text, const Schema& schema) {
   const Location where{"--set " + text, 0};
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
     throw ConfigError({where, "an override must have the form key=value", {}, "e.g. kernel.cutoff=2.4e-3", {}});
   ConfigNode* node = &root;
+  ConfigNode* parent = nullptr;
   std::string section, name;
   for (std::size_t begin = 0; begin <= equals;) {
     const std::size_t end = std::min(text.find('.', begin), equals);
@@ -31,6 +32,7 @@ void apply_override(ConfigNode& root, const std::string& text, const Schema& sch
     auto entry = std::find_if(node->entries.begin(), node->entries.end(), [&](const auto& e) { return e.key == name; });
     if (entry == node->entries.end()) entry = node->entries.insert(entry, ConfigEntry{name, where, {}});
     entry->where = end == equals ? where : entry->where;
+    parent = node;
     node = &entry->value;
     begin = end + 1;
   }
@@ -45,6 +47,9 @@ void apply_override(ConfigNode& root, const std::string& text, const Schema& sch
     node->where = where;
   } else {
     *node = parse_config_value(value, where);
+    const bool is_section = schema.find_section(section.empty() ? name : section + '.' + name) != nullptr;
+    if (node->kind == ConfigNode::Kind::null && is_section)
+      std::erase_if(parent->entries, [&](const ConfigEntry& e) { return e.key == name; });
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <locale>
+#include <map>
 #include <sstream>
 #include <utility>
 
@@ -79,6 +80,20 @@ void add_selection(Schema& schema) {
       schema, "select.region", [](Pipeline & p) -> auto& { return p.select.region; });
 }
 
+void add_accumulation(Schema& schema) {
+  static const std::map<std::string, Accumulation> ways{
+      {"shifted", Accumulation::shifted}, {"float", Accumulation::single}, {"double", Accumulation::twofold}};
+  KeyInfo key{"kernel", "accumulation", ValueType::text,
+              "How the sums over a frame's grains and contacts at a voxel are formed: 'shifted', in single precision "
+              "about local references, and again in double where that could matter; 'float', in single precision with "
+              "neither, which shows what they are for; 'double', all in double precision, slowly. Gradients by the "
+              "kernel and closed line integrals are in double precision always."};
+  key.choices = {"shifted", "float", "double"};
+  key.default_value = key.choices.front();
+  key.apply = [](Pipeline& p, const ConfigValue& v) { p.accumulation = ways.at(std::get<std::string>(v)); };
+  schema.keys.push_back(key);
+}
+
 void add_method(Schema& schema) {
   KeyInfo frames{"", "frames", ValueType::frame_range,
                  "Frames first:end:step of the sorted list, as Python slices: the end is left out, negative numbers "
@@ -118,6 +133,7 @@ void add_method(Schema& schema) {
                  [](Pipeline& p, const ConfigValue& v) { p.cutoff = std::get<double>(v); });
   cutoff.required = true;
   schema.keys.push_back(cutoff);
+  add_accumulation(schema);
 }
 
 void add_output(Schema& schema, const StageRegistry& registry) {

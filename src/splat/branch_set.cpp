@@ -34,7 +34,9 @@ void BranchSet::plan() {
   constexpr double absurd = 1e6;
   const bool adaptive = method_.method == LineIntegral::Method::adaptive;
   if (method_.method == LineIntegral::Method::gauss) only_points_ = method_.gauss_points;
-  if (adaptive) plans_.resize(branches_.size());
+  if (has_curvature()) only_points_ = 1;
+  const bool divides = adaptive || has_curvature();
+  if (divides) plans_.resize(branches_.size());
   bool halves_only = true;
   std::array<bool, 9> used{};
   const auto note = [&](int points, double length) {
@@ -48,7 +50,7 @@ void BranchSet::plan() {
     const Vec3 a = half(b);
     const double length = std::sqrt(dot(a, a));
     if (!(length <= absurd * kernel_.cutoff())) throw std::invalid_argument("a branch is longer than 1e6 cutoffs");
-    if (!adaptive) {
+    if (!divides) {
       note(only_points_, length);
       continue;
     }
@@ -59,7 +61,8 @@ void BranchSet::plan() {
       ++b;
       continue;
     }
-    const LineDivision division = divide_branch(length / kernel_.cutoff());
+    const LineDivision division = adaptive ? divide_branch(length / kernel_.cutoff())
+                                           : LineDivision{curved_branch_parts(length / kernel_.cutoff()), only_points_};
     plans_[b] = {static_cast<std::uint8_t>(division.points), false, static_cast<std::uint32_t>(division.parts)};
     note(division.points, length / division.parts);
     halves_only = halves_only && division.parts == 1;
@@ -119,7 +122,7 @@ Columns3 BranchSet::middles() const {
 }
 
 std::span<const LineNode> BranchSet::rule(int points) const {
-  return method_.method == LineIntegral::Method::gauss ? gauss_rule(points) : lucy_rule(points);
+  return method_.method == LineIntegral::Method::adaptive ? lucy_rule(points) : gauss_rule(points);
 }
 
 Vec3 BranchSet::arm(std::size_t piece) const {
@@ -139,6 +142,14 @@ double BranchSet::value(std::size_t piece, std::size_t channel) const {
   return plan.whole ? values_.of(b)[channel] + values_.of(b + 1)[channel] : values_.of(b)[channel] / plan.parts;
 }
 
+std::vector<double> BranchSet::values_of_pieces() const {
+  std::vector<double> values(source_.size() * channels());
+  parallel_for(source_.size(), [&](std::size_t piece) {
+    for (std::size_t c = 0; c < channels(); ++c) values[piece * channels() + c] = value(piece, c);
+  });
+  return values;
+}
+
 Vec3 BranchSet::from_start(const Vec3& d, const Vec3& arm) const {
   // x - x_α = x - middle - a/2
   const double h = lattice_.voxel();
@@ -148,6 +159,7 @@ Vec3 BranchSet::from_start(const Vec3& d, const Vec3& arm) const {
 double BranchSet::weight(std::size_t piece, const Vec3& d) const {
   const Vec3 a = arm(piece);
   const Vec3 p = from_start(d, a);
+  if (has_curvature()) return kernel_.line_integral_midpoint_curvature(p, a);
   const int n = points(piece);
   return n == 0 ? kernel_.line_integral(p, a) : kernel_.line_integral(p, a, rule(n));
 }

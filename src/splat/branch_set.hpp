@@ -22,8 +22,8 @@ struct BranchValues {
 
 /// A piece is a half branch; or an equal part of one that no rule can integrate at once; or both halves of a contact,
 /// where its point lies on the line of centres, the values of the halves are as their lengths and both are of the same
-/// species: then the whole branch takes fewer points than its halves. Whole and parted branches occur with the adaptive
-/// method only.
+/// species: then the whole branch takes fewer points than its halves. Whole branches occur with the adaptive method
+/// only, parted ones with that and with midpoint_curvature.
 class BranchSet {
  public:
   /// `branches` and `values` must outlive the set. Pieces that reach no leaf that is wanted are left out of the
@@ -37,12 +37,16 @@ class BranchSet {
 
   Vec3 arm(std::size_t piece) const;
   double value(std::size_t piece, std::size_t channel) const;
+  /// [piece][channel]; empty where pieces are half branches, whose values were given.
+  std::vector<double> values_of_pieces() const;
 
   /// The points of the rule that a piece takes, 0 for the exact integral.
   int points(std::size_t piece) const { return plans_.empty() ? only_points_ : plans_[branch(piece)].points; }
   /// The numbers of points that occur, ascending.
   const std::vector<int>& points_used() const { return points_used_; }
   std::span<const LineNode> rule(int points) const;
+  /// Whether the second derivative belongs to the rule.
+  bool has_curvature() const { return method_.method == LineIntegral::Method::midpoint_curvature; }
   /// Half the longest arm of the pieces with so many points, and of all [length].
   double half_arm(int points) const { return half_arm_[static_cast<std::size_t>(points)]; }
   double half_arm() const { return longest_half_arm_; }
@@ -72,7 +76,7 @@ class BranchSet {
   BranchValues values_;
   LineIntegral method_;
   int only_points_ = 0;
-  std::vector<Plan> plans_;            // of each branch, for the adaptive method
+  std::vector<Plan> plans_;            // of each branch, for methods that divide it
   std::vector<std::uint32_t> source_;  // the branch of each piece; empty when pieces are half branches
   std::vector<int> points_used_;
   std::array<double, 9> half_arm_{};

@@ -19,6 +19,7 @@ struct BranchRule {
   explicit BranchRule(std::span<const LineNode> nodes);
   int pairs = 0;
   bool has_middle = false;
+  bool has_curvature = false;  ///< the middle alone, with the second derivative there
   float offset[4] = {};
   float weight[4] = {};
   float middle_weight = 0;

@@ -25,6 +25,7 @@ ContactLeaves::ContactLeaves(const Lattice& lattice, const LucyKernel& kernel, c
   const Buckets& buckets = set.buckets();
   if (buckets.point.size() > std::numeric_limits<std::int32_t>::max()) throw std::invalid_argument("too many contacts");
   for (int n = 0; n <= 8; ++n) rules_.emplace_back(n == 0 ? std::span<const LineNode>{} : set.rule(n));
+  rules_[1].has_curvature = set.has_curvature();
   find_scales();
   records_.room(buckets.point.size() * stride_);
   if (set.points_used().size() > 1) points_.resize(buckets.point.size());
@@ -61,20 +62,20 @@ std::shared_ptr<const Topology> ContactLeaves::topology(const Region* wanted) co
   return std::make_shared<const Topology>(std::move(leaves), std::move(masks));
 }
 
-void ContactLeaves::sums(const Topology& topology, const LeafConsumer& consume) const {
+void ContactLeaves::sums(const Topology& topology, const LeafConsumer& consume, Accumulation how) const {
   tbb::enumerable_thread_specific<ContactWork> works;
   parallel_for(topology.leaf_count(), [&](std::size_t l) {
     ContactWork& work = works.local();
-    run(topology.origin(l), topology.mask(l), work);
+    run(topology.origin(l), topology.mask(l), how, work);
     consume(l, work.values.data());
   });
 }
 
-void ContactLeaves::sums_where_reached(const Topology& topology, const LeafConsumer& consume) const {
+void ContactLeaves::sums_where_reached(const Topology& topology, const LeafConsumer& consume, Accumulation how) const {
   tbb::enumerable_thread_specific<ContactWork> works;
   parallel_for(topology.leaf_count(), [&](std::size_t l) {
     ContactWork& work = works.local();
-    run(topology.origin(l), reached(topology.origin(l), work), work);
+    run(topology.origin(l), reached(topology.origin(l), work), how, work);
     consume(l, work.values.data());
   });
 }
@@ -160,21 +161,28 @@ Vec3 ContactLeaves::from_middle(const Coord& voxel, std::size_t entry) const {
   return {voxel.x - index[0][entry], voxel.y - index[1][entry], voxel.z - index[2][entry]};
 }
 
-void ContactLeaves::run(const Coord& origin, const LeafMask& mask, ContactWork& work) const {
+void ContactLeaves::run(const Coord& origin, const LeafMask& mask, Accumulation how, ContactWork& work) const {
+  run_in_single(origin, mask, work);
+  if (how == Accumulation::shifted) sum_again(origin, mask, work);
+}
+
+void ContactLeaves::run_in_single(const Coord& origin, const LeafMask& mask, ContactWork& work) const {
   find_cells(origin, work);
   collect(origin, work);
   sort_by_rule(work);
   work.sums.resize(channels_ * leaf_size);
   work.values.resize(channels_ * leaf_size);
-  work.faint.resize(leaf_blocks * channels_);
   sum_branches(work.candidates, work.classes, static_cast<int>(channels_), mask, work.scratch, work.sums.data());
-  faint_limits(work.candidates, static_cast<int>(channels_), work.scratch, work.faint.data());
-
   const double peak = kernel_.value(0);
   for (std::size_t c = 0; c < channels_; ++c) {
     const float* sum = work.sums.data() + c * leaf_size;
     scale_sums({sum, peak * scale_[c], sum, 0}, mask, work.values.data() + c * leaf_size);
   }
+}
+
+void ContactLeaves::sum_again(const Coord& origin, const LeafMask& mask, ContactWork& work) const {
+  work.faint.resize(leaf_blocks * channels_);
+  faint_limits(work.candidates, static_cast<int>(channels_), work.scratch, work.faint.data());
   const bool certain = std::all_of(work.faint.begin(), work.faint.end(), [](float bar) { return bar == 0; });
   if (certain) return;
   // Each channel is judged by itself, so that a sum does not depend on which others are asked for.
@@ -221,7 +229,7 @@ void ContactLeaves::sum_in_double(const Coord& origin, int offset, ContactWork& 
     const std::uint32_t e = work.candidates.entry[static_cast<std::size_t>(k)];
     const std::size_t piece = set_.buckets().point[e];
     const double w = set_.weight(piece, from_middle(voxel_at(origin, offset), e));
-    if (!(w > 0)) continue;
+    if (w == 0) continue;
     for (const std::size_t c : work.again) values[c * leaf_size] += set_.value(piece, c) * w;
   }
 }

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "grainvdb/accumulation.hpp"
 #include "grainvdb/leaf_buffers.hpp"
 #include "splat/branch_set.hpp"
 #include "splat/contact_bricks.hpp"
@@ -31,9 +32,9 @@ class ContactLeaves {
   std::shared_ptr<const Topology> topology(const Region* wanted) const;
 
   /// The sums by the rules of the set.
-  void sums(const Topology& topology, const LeafConsumer& consume) const;
+  void sums(const Topology& topology, const LeafConsumer& consume, Accumulation how) const;
   /// The same at the voxels of a topology that has more of them than the branches reach: 0 at those.
-  void sums_where_reached(const Topology& topology, const LeafConsumer& consume) const;
+  void sums_where_reached(const Topology& topology, const LeafConsumer& consume, Accumulation how) const;
 
  private:
   void find_scales();
@@ -42,7 +43,9 @@ class ContactLeaves {
   void sort_by_rule(ContactWork& work) const;
   LeafMask reached(const Coord& leaf, ContactWork& work) const;
   void add_reach(const Coord& leaf, const LeafMask& window, ContactWork& work, LeafMask& mask) const;
-  void run(const Coord& origin, const LeafMask& mask, ContactWork& work) const;
+  void run(const Coord& origin, const LeafMask& mask, Accumulation how, ContactWork& work) const;
+  void run_in_single(const Coord& origin, const LeafMask& mask, ContactWork& work) const;
+  void sum_again(const Coord& origin, const LeafMask& mask, ContactWork& work) const;
   void leave_out_large_sums(int offset, const float* bar, ContactWork& work) const;
   void sum_in_double(const Coord& origin, int offset, ContactWork& work) const;
   Vec3 from_middle(const Coord& voxel, std::size_t entry) const;

@@ -13,6 +13,7 @@
 #include <hwy/highway.h>
 //
 #include "splat/branch_bricks-inl.hpp"
+#include "splat/branch_curvature-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace grainvdb {
@@ -76,6 +77,9 @@ HWY_NOINLINE void weigh(const LeafBranches& b, const std::int32_t* HWY_RESTRICT 
 using Weigh = void (*)(const LeafBranches&, const std::int32_t*, std::size_t, Voxels, const BranchRule&, float, float*);
 constexpr Weigh weigh_of[9] = {nullptr,        weigh<0, true>,  weigh<1, false>, weigh<1, true>, weigh<2, false>,
                                weigh<2, true>, weigh<3, false>, weigh<3, true>,  weigh<4, false>};
+HWY_INLINE Weigh weigher_of(const BranchRule& rule) {
+  return rule.has_curvature ? weigh_with_curvature : weigh_of[2 * rule.pairs + (rule.has_middle ? 1 : 0)];
+}
 
 /// sums[channel][lane] += Σ_k weights[k][lane] q[entry[chosen[k]]][channel], all sums in registers.
 template <int channels>
@@ -123,7 +127,7 @@ HWY_INLINE void add_class(const LeafBranches& leaf, const BranchClass& members, 
   const std::size_t n = pick_branches(leaf, members.first, members.last, box, scratch.chosen.data());
   const float extent = box.half[0] + box.half[1] + box.half[2] + members.half_arm;
   const float epsilon2 = rounding2 * extent * extent;
-  const Weigh weigh_chunk = weigh_of[2 * members.rule->pairs + (members.rule->has_middle ? 1 : 0)];
+  const Weigh weigh_chunk = weigher_of(*members.rule);
   const Voxels at = brick_voxels(brick, h);
   for (std::size_t k = 0; k < n; k += chunk) {
     const std::size_t now = std::min(chunk, n - k);

@@ -20,9 +20,11 @@ struct ContactSplat::Parts {
         set(of, with, branches, values, line_integral, wanted),
         leaves(of, with, set) {}
 
-  /// Every integral in double precision, in closed form.
-  void sum_exactly(const Topology& topology, const LeafConsumer& consume) const {
+  /// Every integral in double precision, by whatever method.
+  void sum_in_double(const Topology& topology, const LeafConsumer& consume) const {
     const std::size_t width = set.channels();
+    const std::vector<double> own = set.values_of_pieces();
+    const double* const values = own.empty() ? q.data() : own.data();
     const double h = lattice.voxel();
     gather_leaves(
         lattice, set.buckets(), (kernel.cutoff() + set.half_arm()) / h, topology, set.channels(),
@@ -30,7 +32,7 @@ struct ContactSplat::Parts {
           const std::size_t b = set.buckets().point[entry];
           const Vec3 arm = set.arm(b);
           const double half = 0.5 * std::sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
-          const double* value = q.data() + b * width;
+          const double* value = values + b * width;
           for_each_voxel(window, entry_index(set.buckets(), entry), (kernel.cutoff() + half) / h,
                          [&](int offset, const Vec3& d) {
                            const double w = set.weight(b, d);
@@ -69,14 +71,14 @@ ContactSplat::ContactSplat(const Lattice& lattice, const LucyKernel& kernel, con
 
 ContactSplat::~ContactSplat() = default;
 
-void ContactSplat::sums(const LeafConsumer& consume) const {
+void ContactSplat::sums(const LeafConsumer& consume, Accumulation how) const {
   if (!parts_) return;
-  if (parts_->method.method == LineIntegral::Method::exact) {
-    parts_->sum_exactly(*topology_, consume);
+  if (how == Accumulation::twofold || parts_->method.method == LineIntegral::Method::exact) {
+    parts_->sum_in_double(*topology_, consume);
   } else if (has_more_voxels_) {
-    parts_->leaves.sums_where_reached(*topology_, consume);
+    parts_->leaves.sums_where_reached(*topology_, consume, how);
   } else {
-    parts_->leaves.sums(*topology_, consume);
+    parts_->leaves.sums(*topology_, consume, how);
   }
 }
 

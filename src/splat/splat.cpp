@@ -21,21 +21,25 @@ void add_scaled(double* sum, const double* q, double w, std::size_t channels) {
   for (std::size_t c = 0; c < channels; ++c) sum[c] += q[c] * w;
 }
 
-// Σ_α q_α weight(|x - x_α|²).
+// Adds the terms of one entry of Σ_α q_α weight(|x - x_α|²), for the gather.
+template <class Weight>
+auto weighed_terms(double h, double cutoff, const Buckets& buckets, std::span<const double> q, int channels,
+                   const Weight& weight) {
+  return [&buckets, &weight, q, h, reach = cutoff / h, width = static_cast<std::size_t>(channels)](
+             std::size_t entry, const LeafWindow& window, double* sums) {
+    const double* values = q.data() + buckets.point[entry] * width;
+    for_each_voxel(window, entry_index(buckets, entry), reach, [&](int offset, const Vec3& d) {
+      add_scaled(sums + static_cast<std::size_t>(offset) * width, values, weight(distance2(d, h)), width);
+    });
+  };
+}
+
 template <class Weight>
 LeafBuffers splat_weighed(const Lattice& lattice, double cutoff, const Buckets& buckets,
                           std::shared_ptr<const Topology> topology, std::span<const double> q, int channels,
                           const Weight& weight) {
-  const double h = lattice.voxel();
-  const double reach = cutoff / h;
-  const auto width = static_cast<std::size_t>(channels);
-  return gather(lattice, buckets, reach, std::move(topology), channels,
-                [&](std::size_t entry, const LeafWindow& window, double* sums) {
-                  const double* values = q.data() + buckets.point[entry] * width;
-                  for_each_voxel(window, entry_index(buckets, entry), reach, [&](int offset, const Vec3& d) {
-                    add_scaled(sums + static_cast<std::size_t>(offset) * width, values, weight(distance2(d, h)), width);
-                  });
-                });
+  return gather(lattice, buckets, cutoff / lattice.voxel(), std::move(topology), channels,
+                weighed_terms(lattice.voxel(), cutoff, buckets, q, channels, weight));
 }
 
 }  // namespace
@@ -44,6 +48,13 @@ LeafBuffers splat_particles(const Lattice& lattice, const LucyKernel& kernel, co
                             std::shared_ptr<const Topology> topology, std::span<const double> q, int channels) {
   return splat_weighed(lattice, kernel.cutoff(), buckets, std::move(topology), q, channels,
                        [&](double r2) { return kernel.value(r2); });
+}
+
+void splat_particles(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets, const Topology& topology,
+                     std::span<const double> q, int channels, const LeafConsumer& consume) {
+  const auto weight = [&](double r2) { return kernel.value(r2); };
+  gather_leaves(lattice, buckets, kernel.cutoff() / lattice.voxel(), topology, static_cast<std::size_t>(channels),
+                weighed_terms(lattice.voxel(), kernel.cutoff(), buckets, q, channels, weight), consume);
 }
 
 LeafBuffers splat_particle_squares(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "bin/buckets.hpp"
+#include "grainvdb/accumulation.hpp"
 #include "grainvdb/kernel.hpp"
 #include "grainvdb/leaf_buffers.hpp"
 #include "grainvdb/moment.hpp"
@@ -23,6 +24,10 @@ std::shared_ptr<const Topology> particle_topology(const Lattice& lattice, const 
 /// Σ_α q_α W(x - x_α) at every active voxel, in double precision. `q` is laid out [point][channel].
 LeafBuffers splat_particles(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
                             std::shared_ptr<const Topology> topology, std::span<const double> q, int channels);
+
+/// The same sums, handed over leaf by leaf.
+void splat_particles(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets, const Topology& topology,
+                     std::span<const double> q, int channels, const LeafConsumer& consume);
 
 /// The same sums by the vectorised kernel, in single precision: relative to the sum of |terms| they are exact to 1e-5
 /// at every voxel, those on the rim of the supports included. `weight_of[c]` is the channel that weighs channel c, or
@@ -73,8 +78,8 @@ class ContactSplat {
   ~ContactSplat();
 
   const std::shared_ptr<const Topology>& topology() const { return topology_; }
-  /// Without branches nothing is handed over.
-  void sums(const LeafConsumer& consume) const;
+  /// Without branches nothing is handed over. Accumulation::twofold adds up the terms of any method in double.
+  void sums(const LeafConsumer& consume, Accumulation how = Accumulation::shifted) const;
 
  private:
   struct Parts;

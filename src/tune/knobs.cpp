@@ -2,10 +2,13 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "grainvdb/run.hpp"
 #include "grainvdb/tune.hpp"
+#include "tune/measured_run.hpp"
 #include "tune/nine_digits.hpp"
+#include "tune/profile_error.hpp"
 #include "tune/runs_stage.hpp"
 
 namespace grainvdb {
@@ -50,10 +53,22 @@ Knob option_knob(const Pipeline& pipeline, const std::string& stage, const std::
   return knob;
 }
 
+Knob accumulation_knob(const Pipeline& pipeline) {
+  Knob knob{"kernel.accumulation", {}};
+  for (const auto& [text, way] : {std::pair{"float", Accumulation::single}, std::pair{"shifted", Accumulation::shifted},
+                                  std::pair{"double", Accumulation::twofold}})
+    if (way != pipeline.accumulation) knob.values.emplace_back(text);
+  return knob;
+}
+
+Knob interpolation_knob(const TraceSpec& trace) {
+  return {"trace.interpolation", {trace.interpolation == Interpolation::trilinear ? "cubic" : "trilinear"}};
+}
+
 }  // namespace
 
 std::vector<Knob> default_knobs(const Pipeline& pipeline, const Plan& plan, FrameSource& source) {
-  std::vector<Knob> knobs{voxel_knob(pipeline, check_against_input(pipeline, plan, source))};
+  std::vector<Knob> knobs{voxel_knob(pipeline, checked_lattice_of(pipeline, plan, source))};
   const auto add = [&](const std::string& stage, const std::string& name, const std::set<std::string>& left_out) {
     if (runs_stage(plan, stage)) knobs.push_back(option_knob(pipeline, stage, name, left_out));
   };
@@ -63,6 +78,10 @@ std::vector<Knob> default_knobs(const Pipeline& pipeline, const Plan& plan, Fram
   for (const char* stage : {"temperature", "rotational_fluctuation"})
     for (const char* name : {"mode", "self_weight"}) add(stage, name, {});
   for (const char* stage : {"velocity_gradient", "angular_velocity_gradient"}) add(stage, "method", {});
+  if (!plan.sweeps.empty()) knobs.push_back(accumulation_knob(pipeline));
+  if (pipeline.trace) knobs.push_back(interpolation_knob(*pipeline.trace));
+  if (!profile_quantities(pipeline, source).empty())
+    if (const auto knob = profile_knob(pipeline)) knobs.push_back(*knob);
   knobs.push_back(frame_knob(pipeline, select_frames(pipeline.frames, source.frames().size()).size()));
   std::erase_if(knobs, [](const Knob& k) { return k.values.empty(); });
   return knobs;

@@ -35,7 +35,7 @@ class Search {
       squares_.push_back(bound * bound);
     }
     for (std::size_t t = 1; t < trials.size(); ++t) {
-      const bool measured = trials[t].set.size() == 1 && std::isfinite(score(trials[t], tolerance));
+      const bool measured = trials[t].knobs == 1 && std::isfinite(score(trials[t], tolerance));
       if (!measured || !concerns(trials[t], trials[0], tolerance)) continue;
       if (steps_.empty() || knob_of[steps_.back().front().trial] != knob_of[t]) steps_.emplace_back();
       steps_.back().push_back(step(t));
@@ -167,7 +167,7 @@ std::size_t choose(const std::vector<Trial>& trials, const Tolerances& tolerance
   const bool good_as_it_is = meets(trials[0], tolerance);
   for (std::size_t t = 1; t < trials.size(); ++t) {
     if (!meets(trials[t], tolerance) || tolerance.empty()) continue;
-    if (trials[t].set.size() == 1 && !concerns(trials[t], trials[0], tolerance)) continue;
+    if (trials[t].knobs == 1 && !concerns(trials[t], trials[0], tolerance)) continue;
     // Best times differ by chance from call to call; times that overlap say nothing.
     if (good_as_it_is && trials[t].worst_seconds() >= trials[0].best_seconds()) continue;
     if (!meets(trials[best], tolerance) || trials[t].best_seconds() < trials[best].best_seconds()) best = t;

@@ -82,12 +82,24 @@ std::string table(const TuneReport& report, const std::map<std::string, double>&
   return aligned(rows);
 }
 
+bool compares(const TuneReport& report, const std::string& prefix) {
+  return std::any_of(report.fields.begin(), report.fields.end(),
+                     [&](const std::string& name) { return name.starts_with(prefix); });
+}
+
 std::string what_it_shows(const TuneReport& report) {
-  std::string text =
-      "Errors: sqrt(sum |f - r|^2 / sum |r|^2), ratios weighted with phi, at " +
-      std::to_string(report.reference_points) +
-      " points between the voxel centres, to\nwhich f is interpolated. r is from a reference run with\n ";
+  std::string text;
+  if (report.reference_points > 0)
+    text += "Errors: sqrt(sum |f - r|^2 / sum |r|^2), ratios weighted with phi, at " +
+            std::to_string(report.reference_points) +
+            " points between the voxel centres, to\nwhich f is interpolated. ";
+  text += "r is from a reference run with\n ";
   for (const std::string& s : report.reference) text += ' ' + s;
+  if (compares(report, "profile."))
+    text +=
+        "\nprofile: the same sum over planes, against the exact averages of all frames at the planes of the setting";
+  if (compares(report, "position"))
+    text += "\nposition: rms distance of tracers at the end from those of the reference, in mean diameters";
   text += "\n* nothing is both faster and closer, = the current setting, > the proposed one\n";
   const FieldError* lost = nullptr;
   for (const FieldError& e : report.trials.front().errors)

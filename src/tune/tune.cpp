@@ -2,15 +2,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <map>
 #include <numbers>
 #include <set>
+#include <utility>
 
 #include "grainvdb/run.hpp"
 #include "pipeline/text.hpp"
+#include "pipeline/trace_start.hpp"
 #include "tune/field_error.hpp"
+#include "tune/measured_run.hpp"
 #include "tune/nine_digits.hpp"
+#include "tune/profile_error.hpp"
 #include "tune/proposal.hpp"
 #include "tune/runs_stage.hpp"
+#include "tune/tracer_error.hpp"
 
 namespace grainvdb {
 namespace {
@@ -51,7 +58,21 @@ std::vector<std::string> reference_of(const Pipeline& pipeline, const Plan& plan
   if (runs_stage(plan, "contact_stress")) set.emplace_back("stages.contact_stress.line_integral=exact");
   for (const char* stage : {"velocity_gradient", "angular_velocity_gradient"})
     if (runs_stage(plan, stage)) set.push_back("stages." + std::string(stage) + ".method=kernel");
+  if (!plan.sweeps.empty()) set.emplace_back("kernel.accumulation=double");
+  if (pipeline.trace) set.emplace_back("trace.interpolation=cubic");
   return set;
+}
+
+bool traces_frames(const Pipeline& pipeline) {
+  return pipeline.trace && pipeline.trace->through == TraceSpec::Through::frames;
+}
+
+/// Tracers through the mean go as far with fewer frames, and show only where they end.
+void look_at_ends(TraceSpec& trace, const Pipeline& current, const FrameSource& source) {
+  const std::vector<std::size_t> frames = select_frames(current.frames, source.frames().size());
+  trace.duration = current.trace->duration.value_or(time_of(source.frames()[frames.back()]) -
+                                                    time_of(source.frames()[frames.front()]));
+  trace.every = std::int64_t{1} << 40;
 }
 
 class Tuning {
@@ -64,6 +85,13 @@ class Tuning {
         plan_(make_plan(current_)) {
     for (const std::string& field : current_.fields)
       (has_a_norm(field) ? report_.fields : report_.not_compared).push_back(field);
+    field_count_ = std::ssize(report_.fields);
+    planes_ = profile_quantities(current_, source_);
+    report_.fields.insert(report_.fields.end(), planes_.begin(), planes_.end());
+    if (current_.trace) {
+      report_.fields.emplace_back("position");
+      diameter_ = mean_diameter_of(current_, source_);
+    }
     check_tolerances();
   }
 
@@ -81,11 +109,13 @@ class Tuning {
   }
 
  private:
-  /// One mean over all frames, whatever the pipeline averages over.
+  /// One mean over all frames, whatever the pipeline averages over, where no tracers go through frames.
   Pipeline load(const std::vector<std::string>& set) const {
     Pipeline pipeline = load_pipeline(request_.file, joined(request_.overrides, set));
-    pipeline.window = pipeline.window_step = 0;
+    if (!traces_frames(pipeline)) pipeline.window = pipeline.window_step = 0;
     pipeline.until.reset();
+    pipeline.reduced.reset();
+    std::erase_if(pipeline.measure, [](const auto& m) { return m.first != "profile" && m.first != "plane_profile"; });
     return pipeline;
   }
 
@@ -105,7 +135,9 @@ class Tuning {
     knob_of_.emplace_back();
     for (const Knob& knob : request_.knobs)
       for (const std::string& value : knob.values) {
-        report_.trials.push_back({{knob.key + '=' + value}});
+        Trial trial{joined({knob.key + '=' + value}, knob.along)};
+        trial.knobs = 1;
+        report_.trials.push_back(std::move(trial));
         knob_of_.push_back(knob.key);
       }
   }
@@ -123,14 +155,13 @@ class Tuning {
   }
 
   struct Timed {
-    FieldSet result;
+    MeasuredRun result;
     double seconds;
   };
 
-  /// Nothing is written.
-  Timed timed_run(const Pipeline& pipeline, const std::string& what) {
+  Timed timed_run(Pipeline pipeline, const std::string& what) {
+    if (pipeline.trace && !traces_frames(pipeline)) look_at_ends(*pipeline.trace, current_, source_);
     const Plan plan = make_plan(pipeline);
-    Timed timed{{check_against_input(pipeline, plan, source_), {}}, 0};
     TuneRequest::Step step{done_++, planned_, what, 0, 0};
     const auto tell = [&](const Progress& p) {
       step.frames = p.frames_done;
@@ -139,10 +170,29 @@ class Tuning {
     };
     tell({});
     const double start = clock_();
-    compute_fields(
-        pipeline, plan, source_, [&](OutputFields output) { timed.result.fields = std::move(output.fields); }, tell);
-    timed.seconds = clock_() - start;
-    return timed;
+    MeasuredRun result = measured_run(pipeline, plan, source_, tell);
+    return {std::move(result), clock_() - start};
+  }
+
+  /// Of the current setting, at the planes of another.
+  const std::vector<Table>& exact_tables(const Pipeline& pipeline) {
+    const auto [it, is_new] = exact_.try_emplace({pipeline.voxel, pipeline.origin});
+    if (is_new) {
+      Pipeline exact = exact_profile(current_);
+      exact.voxel = pipeline.voxel;
+      exact.origin = pipeline.origin;
+      it->second = measured_run(exact, make_plan(exact), source_, {}).tables;
+    }
+    return it->second;
+  }
+
+  std::vector<FieldError> errors_of(const Pipeline& pipeline, const MeasuredRun& found) {
+    std::vector<FieldError> errors = field_errors(points_, found.fields);
+    if (!planes_.empty())
+      for (FieldError& e : profile_errors(planes_, exact_tables(pipeline), found.tables))
+        errors.push_back(std::move(e));
+    if (current_.trace) errors.push_back(position_error(reference_tracers_, found.tracers, diameter_));
+    return errors;
   }
 
   void run_reference() {
@@ -151,19 +201,22 @@ class Tuning {
     const bool with_phi = has_volumes(plan_);
     if (with_phi && std::find(pipeline.fields.begin(), pipeline.fields.end(), "phi") == pipeline.fields.end())
       pipeline.fields.emplace_back("phi");
-    const Timed timed = timed_run(pipeline, "the reference");
+    Timed timed = timed_run(pipeline, "the reference");
     report_.reference_seconds = timed.seconds;
-    points_ = reference_points(timed.result, report_.fields, with_phi ? "phi" : "", most_points);
+    const std::vector<std::string> fields(report_.fields.begin(), report_.fields.begin() + field_count_);
+    points_ = reference_points(timed.result.fields, fields, with_phi ? "phi" : "", most_points);
     report_.reference_points = points_.position.size();
+    reference_tracers_ = std::move(timed.result.tracers);
   }
 
   /// A setting that cannot be run is reported as refused; only the current one must be possible.
   void run_trial(Trial& trial, std::size_t repeat) {
     if (!trial.refused.empty()) return;
     try {
-      const Timed timed = timed_run(load(trial.set), trial.name());
+      const Pipeline pipeline = load(trial.set);
+      const Timed timed = timed_run(pipeline, trial.name());
       trial.seconds.push_back(timed.seconds);
-      if (repeat == 0) trial.errors = field_errors(points_, timed.result);
+      if (repeat == 0) trial.errors = errors_of(pipeline, timed.result);
     } catch (const Error& error) {
       const bool impossible = dynamic_cast<const ConfigError*>(&error) || dynamic_cast<const LimitError*>(&error);
       if (trial.set.empty() || !impossible) throw;
@@ -178,7 +231,8 @@ class Tuning {
       const Trial& best = report_.trials[choose(report_.trials, request_.tolerance)];
       if (meets(best, request_.tolerance) && c.seconds >= best.best_seconds()) return;
       Trial trial;
-      for (std::size_t t : c.trials) trial.set.push_back(report_.trials[t].set.front());
+      for (std::size_t t : c.trials) trial.set = joined(trial.set, report_.trials[t].set);
+      trial.knobs = c.trials.size();
       for (std::size_t repeat = 0; repeat < request_.repeats; ++repeat) run_trial(trial, repeat);
       report_.trials.push_back(std::move(trial));
       knob_of_.emplace_back();
@@ -191,7 +245,12 @@ class Tuning {
   Pipeline current_;
   Plan plan_;
   std::vector<std::string> knob_of_;  // of each trial
+  std::ptrdiff_t field_count_ = 0;    // of what is compared; the rest are planes and tracers
+  std::vector<std::string> planes_;   // the averages over them
+  double diameter_ = 0;
   ReferencePoints points_;
+  TracerPaths reference_tracers_;
+  std::map<std::pair<double, Vec3>, std::vector<Table>> exact_;  // by voxel and origin
   std::size_t planned_ = 0;
   std::size_t done_ = 0;
   TuneReport report_;

@@ -45,6 +45,15 @@ class Tune(unittest.TestCase):
         names = [text.get_text() for text in figure.legends[0].get_texts()]
         self.assertEqual(names, ["lattice.voxel", "kernel.points", "several", "current setting", "proposed"])
 
+    def test_one_measurement_in_place_of_another_is_one_change(self):
+        setting = "measure.profile=null measure.plane_profile.axis=z"
+        self.assertEqual(tune.knob({"setting": setting}), "measure.profile")
+        self.assertEqual(tune.knob({"setting": setting + " lattice.voxel=2"}), "several")
+
+    def test_tracers_are_so_many_diameters_away(self):
+        rows = [row | {"field": "position"} for row in tune.read(self.table)]
+        self.assertEqual(tune.draw(rows).axes[0].get_ylabel(), "rms distance [d]")
+
     def test_an_exact_setting_has_no_logarithm(self):
         rows = [row | {"rms": "0"} for row in tune.read(self.table) if row["field"] == "phi"]
         self.assertEqual(tune.draw(rows).axes[0].get_yscale(), "linear")

@@ -134,7 +134,8 @@ TEST(FieldDescriptions, NamesTellMomentsApart) {
     add("rotational_fluctuation", {{"rotational_fluctuation", "mode", mode}});
   }
   add("contact_stress", {});
-  add("contact_stress", {{"contact_stress", "line_integral", "exact"}});
+  for (const char* method : {"exact", "midpoint_curvature"})
+    add("contact_stress", {{"contact_stress", "line_integral", method}});
   for (int n = 1; n <= 8; ++n)
     add("contact_stress", {{"contact_stress", "line_integral", "gauss" + std::to_string(n)}});
   add("contact_stress", {{"contact_stress", "wall_contacts", "exclude"}});

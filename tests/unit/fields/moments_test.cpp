@@ -156,7 +156,9 @@ TEST(MomentValues, ContactStress) {
   view.b.arm = {{{1}, {2}, {3}}};
   view.b.force = {{{10}, {20}, {30}}};
   EXPECT_THAT(values("contact_stress", 0, {}, view), ElementsAre(-10, -20, -30, -20, -40, -60, -30, -60, -90));
-  std::map<std::string, LineIntegral> methods{{"adaptive", LineIntegral::adaptive()}, {"exact", LineIntegral::exact()}};
+  std::map<std::string, LineIntegral> methods{{"adaptive", LineIntegral::adaptive()},
+                                              {"exact", LineIntegral::exact()},
+                                              {"midpoint_curvature", LineIntegral::midpoint_curvature()}};
   for (int n = 1; n <= 8; ++n) methods["gauss" + std::to_string(n)] = LineIntegral::gauss(n);
   for (const auto& [name, method] : methods) {
     const MomentPtr m =

@@ -228,6 +228,21 @@ TEST(Overrides, MayRepairTheFile) {
   EXPECT_EQ(load(text, {"kernel.cutoff=3"}).cutoff, 3);
 }
 
+TEST(Overrides, MayLeaveOutSections) {
+  const Texts shells{"measure.profile.axis=x", "measure.profile.bin=2"};
+  Texts overrides = shells;
+  EXPECT_EQ(load(minimal_text(), overrides).measure.size(), 1U);
+  overrides.emplace_back("measure.profile=null");
+  overrides.emplace_back("measure.plane_profile.axis=y");
+  const Pipeline p = load(minimal_text(), overrides);
+  EXPECT_EQ(p.measure.size(), 1U);
+  EXPECT_TRUE(p.measure.contains("plane_profile"));
+  EXPECT_FALSE(p.where.contains("measure.profile.axis"));
+  EXPECT_FALSE(load(minimal_text(), {"trace=null"}).trace) << "there was none";
+  EXPECT_THROW(load(minimal_text(), {"kernel=null"}), ConfigError) << "it is needed";
+  EXPECT_THROW(load(minimal_text(), {"kernel.cutoff=null"}), ConfigError) << "no section";
+}
+
 TEST(LoadPipeline, AverageUntil) {
   const auto with = [](const std::string& average) {
     const PipelineFile file(

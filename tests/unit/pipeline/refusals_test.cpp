@@ -29,7 +29,7 @@ std::string plus(const std::string& lines) {
 
 TEST(Refusals, UnknownNames) {
   EXPECT_THAT(refusal(with("cutoff:", "cutof:")),
-              AllOf(StartsWith("FILE:7: unknown key 'cutof' in section 'kernel'"), HasSubstr("expected name or cutoff"),
+              AllOf(StartsWith("FILE:7: unknown key 'cutof' in section 'kernel'"), HasSubstr("expected name, cutoff or accumulation"),
                     HasSubstr("Did you mean 'cutoff'?")));
   EXPECT_THAT(refusal(with("kernel:", "kernal:")),
               AllOf(StartsWith("FILE:6: unknown key 'kernal';"), HasSubstr("Did you mean 'kernel'?")));

@@ -23,6 +23,7 @@ std::string bytes_of(T value) {
 struct OldFrame {
   std::int64_t step = 7, atoms = 2;
   std::int32_t tilted = 0, first_boundary = 0, columns = 4, chunks = 2, numbers = 4;
+  std::vector<double> tilts{};
   std::vector<double> values{0.25, 0.5, 1, 2, 0.75, 1, 1.5, 1};
 
   std::string text() const {
@@ -30,6 +31,7 @@ struct OldFrame {
         bytes_of(step) + bytes_of(atoms) + bytes_of(tilted) + bytes_of(first_boundary) + bytes_of(std::int32_t{0});
     for (int side = 0; side < 4; ++side) all += bytes_of(std::int32_t{1});
     for (int axis = 0; axis < 3; ++axis) all += bytes_of(0.0) + bytes_of(2.0 + axis);
+    for (const double tilt : tilts) all += bytes_of(tilt);
     all += bytes_of(columns) + bytes_of(chunks);
     for (std::size_t k = 0; k < values.size(); ++k) all += (k % 4 == 0 ? bytes_of(numbers) : "") + bytes_of(values[k]);
     return all;
@@ -160,7 +162,19 @@ TEST_F(BinaryDumps, RefusesChunksAndValuesThatAreWrong) {
   expect_refused(wrong.text(), {"size that does not fit the frame", "0 of 1"});
   wrong = {};
   wrong.tilted = 1;
-  expect_refused(wrong.text(), {"triclinic"});
+  wrong.tilts = {0, 1e-9, 0};
+  expect_refused(wrong.text(), {"triclinic", "all tilts 0"});
+}
+
+TEST_F(BinaryDumps, ATiltedBoxWithoutTiltIsOrthogonal) {
+  OldFrame frame;
+  frame.tilted = 1;
+  frame.tilts = {0, -0.0, 0};
+  InputSpec spec = particles_in({files_.write("old.bin", frame.text())});
+  spec.columns = {"x", "y", "z", "id"};
+  const Frame read = open_dumps(spec)->read(0, {});
+  EXPECT_EQ(read.box, (Box{{0, 0, 0}, {2, 3, 4}, {true, false, false}}));
+  EXPECT_EQ(read.particles.size(), 2U);
 }
 
 TEST_F(BinaryDumps, RefusesValuesThatAreNoNumbers) {

@@ -47,6 +47,9 @@ TEST(BranchSet, JoinsTheHalvesOfAContactOnTheLineOfCentres) {
   for (const double share : {0.5, 0.3, 0.9}) EXPECT_EQ(pieces(contact(share)), 1u);
   EXPECT_EQ(pieces(contact(0.5), LineIntegral::gauss(3)), 2u);
   EXPECT_EQ(pieces(contact(0.5), LineIntegral::exact()), 2u);
+  // Halves of 0.16 cutoffs each; of 0.29 and 0.03, of which one is divided.
+  EXPECT_EQ(pieces(contact(0.5), LineIntegral::midpoint_curvature()), 2u);
+  EXPECT_EQ(pieces(contact(0.9), LineIntegral::midpoint_curvature()), 3u);
 }
 
 TEST(BranchSet, TheWholeHasTheArmAndTheValuesOfBoth) {

@@ -21,8 +21,18 @@ constexpr double bar = 1e-5;
 class FastContactSplat : public testing::TestWithParam<Scene> {
  protected:
   double mean(LineIntegral method, const Vec3& p, const Vec3& a) const {
+    if (method == LineIntegral::midpoint_curvature()) return divided(p, a);
     return method.method == LineIntegral::Method::adaptive ? kernel.line_integral_adaptive(p, a)
                                                            : kernel.line_integral_gauss(p, a, method.gauss_points);
+  }
+  double divided(const Vec3& p, const Vec3& a) const {
+    const int parts = curved_branch_parts(norm(a) / scene.cutoff);
+    const Vec3 part{a[0] / parts, a[1] / parts, a[2] / parts};
+    double sum = 0;
+    for (int k = 0; k < parts; ++k)
+      sum +=
+          kernel.line_integral_midpoint_curvature({p[0] + k * part[0], p[1] + k * part[1], p[2] + k * part[2]}, part);
+    return sum / parts;
   }
   std::vector<ReachedVoxel> weigh(LineIntegral method) const {
     return weigh_branches(scene, branches, [&](const Vec3& p, const Vec3& a) { return mean(method, p, a); });
@@ -44,7 +54,7 @@ class FastContactSplat : public testing::TestWithParam<Scene> {
         for (const auto& [b, w] : v.branches) {
           const double value = q[b * static_cast<std::size_t>(channels) + static_cast<std::size_t>(c)];
           sum += value * w;
-          terms += std::abs(value) * w;
+          terms += std::abs(value * w);
           reached += std::abs(value);
         }
         EXPECT_NEAR(value_at(sums, v.voxel, c), sum, bar * terms + shift * reached)
@@ -74,6 +84,7 @@ TEST_P(FastContactSplat, EqualsTheSumsInDoubleForAnyNumberOfChannels) {
 
 TEST_P(FastContactSplat, EqualsTheSumsInDoubleForEveryRule) {
   for (int n = 1; n <= 8; ++n) expect_equal(2, LineIntegral::gauss(n));
+  expect_equal(2, LineIntegral::midpoint_curvature());
 }
 
 TEST_P(FastContactSplat, EqualsTheSumsInDoubleWithFewAndManyBranches) {
@@ -86,7 +97,8 @@ TEST_P(FastContactSplat, EqualsTheSumsInDoubleWithFewAndManyBranches) {
 TEST_P(FastContactSplat, EveryInstructionSetGivesTheSame) {
   branches = random_branches(scene, 40, 32, 0, 0.7);
   const auto q = random_values(branches.size() * 9, 24);
-  for (const LineIntegral method : {LineIntegral::adaptive(), LineIntegral::gauss(4)}) {
+  for (const LineIntegral method :
+       {LineIntegral::adaptive(), LineIntegral::gauss(4), LineIntegral::midpoint_curvature()}) {
     const auto expected = weigh(method);
     for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
       hwy::SetSupportedTargetsForTest(target);
@@ -104,6 +116,7 @@ TEST_P(FastContactSplat, ErrsByNoMoreThanItsBoundOnBranchesOfAllLengths) {
   for (auto& column : branches.arm) column[8] = 0;
   const auto q = random_values(branches.size(), 34);
   const LeafBuffers sums = splat_contacts(lattice, kernel, branches, q, 1, LineIntegral::adaptive());
+  const LeafBuffers bent = splat_contacts(lattice, kernel, branches, q, 1, LineIntegral::midpoint_curvature());
   const LeafBuffers exact = splat_contacts(lattice, kernel, branches, q, 1, LineIntegral::exact());
   const double peak = lucy_peak(scene.cutoff);
   for (const ReachedVoxel& v :
@@ -116,6 +129,7 @@ TEST_P(FastContactSplat, ErrsByNoMoreThanItsBoundOnBranchesOfAllLengths) {
       reached += std::abs(q[b]);
     }
     EXPECT_NEAR(value_at(sums, v.voxel, 0), sum, lucy_rule_error * peak * reached + bar * terms);
+    EXPECT_NEAR(value_at(bent, v.voxel, 0), sum, curved_branch_error * peak * reached + bar * terms);
     EXPECT_NEAR(value_at(exact, v.voxel, 0), sum, 1e-12 * peak * reached);
   }
 }

@@ -14,13 +14,14 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 Trial trial(std::vector<std::string> set, double seconds, std::vector<std::pair<std::string, double>> errors) {
-  Trial t{std::move(set), {seconds + 1, seconds}, {}, {}};
+  Trial t{std::move(set), {seconds + 1, seconds}};
+  t.knobs = t.set.size();
   for (const auto& [field, rms] : errors) t.errors.push_back({field, rms, rms, 10, 0});
   return t;
 }
 
 Trial refused(const std::string& set) {
-  Trial t{{set}, {}, {}, "it cannot be"};
+  Trial t{{set}, {}, {}, "it cannot be", 1};
   return t;
 }
 

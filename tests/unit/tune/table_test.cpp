@@ -48,6 +48,15 @@ TEST(TuneTable, SaysWhereTheCurrentSettingStays) {
   EXPECT_THAT(describe(r, {{"phi", 0.05}}), HasSubstr("The current setting keeps to phi 0.05, and none of those"));
 }
 
+TEST(TuneTable, SaysWhatPlanesAndTracersAreHeldAgainst) {
+  TuneReport r = report();
+  EXPECT_THAT(describe(r, {}), AllOf(Not(HasSubstr("profile:")), Not(HasSubstr("position:"))));
+  r.fields = {"profile.phi", "position"};
+  r.reference_points = 0;
+  EXPECT_THAT(describe(r, {}), AllOf(HasSubstr("profile: the same sum over planes"),
+                                     HasSubstr("position: rms distance of tracers"), Not(HasSubstr("points between"))));
+}
+
 TEST(TuneTable, HasARowPerSettingAndField) {
   EXPECT_EQ(
       to_csv(report(), {{"phi", 0.05}}),
