@@ -57,8 +57,8 @@ def panel(rows: list[Row], field: str, colours: dict[str, object], ax: Axes) -> 
     if tolerance:
         ax.axhline(tolerance, color="black", linestyle=":", linewidth=1)
     positive = any(float(r["rms"]) > 0 for r in mine)
-    error = "rms distance [d]" if field == "position" else "relative error"
-    ax.set(title=field, xlabel="time [s]", ylabel=error, xscale="log", yscale="log" if positive else "linear")
+    unit = "rms distance [d]" if field == "position" else "relative error"
+    ax.set(title=field, xlabel="time [s]", ylabel=unit, xscale="log", yscale="log" if positive else "linear")
     ax.grid(alpha=0.3)
     return ax
 
