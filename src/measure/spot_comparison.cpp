@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
-
-#include "base/nan.hpp"
 
 namespace grainvdb {
 namespace {
@@ -13,45 +10,31 @@ namespace {
 constexpr auto slowness = static_cast<std::size_t>(SpotObservable::slowness);
 constexpr std::array<const char*, spot_observable_count> observable_names{"radius", "b", "diffusion_length", "outflow",
                                                                           "speed"};
+// Slopes of what was seen against what made it lay between 0.5 and 1.1 in runs of docs/spot_calibration.md.
+constexpr double slope_error = 0.3;
 
-/// Errors of what observed() gives, relative but for the slowness.
-std::vector<double> observed_errors(const SpotObservations& o) {
+/// Errors of what is compared, of logarithms but for the slowness.
+std::vector<double> errors_of(const SpotObservations& o) {
   const auto relative = [](const Estimate& e) { return e.error / e.value; };
   return {relative(o.radius), relative(o.b), relative(o.grain_diffusion), relative(o.outflow),
           std::abs(o.speed.error / (o.speed.value * o.speed.value))};
 }
 
-double mean_of_values(const std::vector<double>& x) {
-  return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
-}
-
-double sum_of_squares_about_mean(const std::vector<double>& x) {
-  const double mean = mean_of_values(x);
-  double sum = 0;
-  for (const double y : x) sum += (y - mean) * (y - mean);
-  return sum;
-}
-
-/// Root of the mean of the squares of those that are known; 0 without any.
-double root_mean_square(const std::vector<double>& x) {
-  double sum = 0;
-  std::size_t known = 0;
-  for (const double y : x) {
-    if (!std::isfinite(y)) continue;
-    sum += y * y;
-    ++known;
-  }
-  return known == 0 ? 0 : std::sqrt(sum / static_cast<double>(known));
+double on_scale(std::size_t observable, double value) {
+  return observable == slowness ? value : std::log(value);
 }
 
 double larger_known(double a, double b) {
   return std::isfinite(a) ? std::max(a, b) : b;
 }
 
-Estimate divided(const Estimate& seen, const SpotBias& by, double duration_ratio) {
-  const double own = larger_known(seen.error / seen.value, by.scatter * std::sqrt(duration_ratio));
-  const double value = seen.value / by.bias.value;
-  return {value, value * std::hypot(own, by.bias.error / by.bias.value)};
+Estimate from_logarithm(const Estimate& e) {
+  return {std::exp(e.value), std::exp(e.value) * e.error};
+}
+
+Estimate speed_of(const Estimate& slow) {
+  if (!(slow.value > 0)) return {};
+  return {1 / slow.value, std::min(1 / slow.value, slow.error / (slow.value * slow.value))};
 }
 
 }  // namespace
@@ -72,58 +55,94 @@ std::vector<double> SpotComparison::observed(const SpotObservations& seen) {
 
 std::vector<std::string> SpotComparison::add_round(const SpotTruth& made, const std::vector<SpotObservations>& runs) {
   const std::vector<double> truth = expected(made);
-  Round round;
-  round.biases.resize(spot_observable_count);
-  std::vector<std::vector<double>> stated = stated_;
-  stated.resize(spot_observable_count);
+  std::vector<std::vector<Run>> with = runs_;
   std::vector<std::string> missing;
   for (std::size_t i = 0; i < spot_observable_count; ++i) {
     bool told = true;
     for (const SpotObservations& run : runs) {
-      const double seen = observed(run)[i];
-      told = told && std::isfinite(seen) && (i == slowness || seen > 0);
-      round.biases[i].push_back(i == slowness ? seen - truth[i] : std::log(seen / truth[i]));
-      stated[i].push_back(observed_errors(run)[i]);
+      const double seen = on_scale(i, observed(run)[i]);
+      told = told && std::isfinite(seen);
+      with[i].push_back({rounds_, on_scale(i, truth[i]), seen, errors_of(run)[i]});
     }
     if (!told) missing.emplace_back(observable_names[i]);
   }
   if (!missing.empty()) return missing;
-  rounds_.push_back(std::move(round));
-  stated_ = std::move(stated);
+  runs_ = std::move(with);
+  ++rounds_;
   return {};
 }
 
-std::vector<SpotBias> SpotComparison::biases() const {
-  std::vector<SpotBias> all;
-  for (std::size_t i = 0; i < spot_observable_count; ++i) {
-    const std::vector<double>& last = rounds_.back().biases[i];
-    double squares = 0;
-    std::size_t freedom = 0;
-    for (const Round& round : rounds_) {
-      squares += sum_of_squares_about_mean(round.biases[i]);
-      freedom += round.biases[i].size() - 1;
+// Within all rounds, or what the estimators state, where that is more. What these state of a slowness near 0 is
+// anything.
+double SpotComparison::scatter(std::size_t observable) const {
+  const std::vector<Run>& runs = runs_[observable];
+  double squares = 0, stated = 0;
+  for (const Run& run : runs) {
+    double sum = 0, count = 0;
+    for (const Run& other : runs) {
+      if (other.round != run.round) continue;
+      sum += other.seen;
+      ++count;
     }
-    const double of_runs = freedom == 0 ? nan : std::sqrt(squares / static_cast<double>(freedom));
-    const double scatter = larger_known(of_runs, root_mean_square(stated_[i]));
-    const double error = scatter / std::sqrt(static_cast<double>(last.size())), mean = mean_of_values(last);
-    if (i == slowness)
-      all.push_back({{mean, error}, scatter});
-    else
-      all.push_back({{std::exp(mean), std::exp(mean) * error}, scatter});
+    squares += (run.seen - sum / count) * (run.seen - sum / count);
+    if (std::isfinite(run.stated)) stated += run.stated * run.stated;
+  }
+  const double among = std::sqrt(squares / static_cast<double>(runs.size() - rounds_));
+  return observable == slowness ? among : std::max(among, std::sqrt(stated / static_cast<double>(runs.size())));
+}
+
+std::vector<Estimate> SpotComparison::biases() const {
+  std::vector<Estimate> all;
+  for (std::size_t i = 0; i < spot_observable_count; ++i) {
+    double sum = 0, count = 0;
+    for (const Run& run : runs_[i]) {
+      if (run.round + 1 != rounds_) continue;
+      sum += run.seen - run.made;
+      ++count;
+    }
+    const Estimate mean{sum / count, scatter(i) / std::sqrt(count)};
+    all.push_back(i == slowness ? mean : from_logarithm(mean));
   }
   return all;
 }
 
+// The slope is the mean of 1 and of that of the least squares, each with the weight of its error.
+Estimate SpotComparison::inverted(std::size_t observable, double seen, double error) const {
+  double count = 0, made_mean = 0, seen_mean = 0, squares = 0, products = 0;
+  const auto of_last = [&](auto use) {
+    for (const Run& run : runs_[observable])
+      if (run.round + 2 >= rounds_) use(run);
+  };
+  of_last([&](const Run& run) {
+    ++count;
+    made_mean += run.made;
+    seen_mean += run.seen;
+  });
+  made_mean /= count;
+  seen_mean /= count;
+  of_last([&](const Run& run) {
+    squares += (run.made - made_mean) * (run.made - made_mean);
+    products += (run.made - made_mean) * (run.seen - seen_mean);
+  });
+  const double noise = scatter(observable), weight = noise * noise / (slope_error * slope_error);
+  const double slope = (products + weight) / (squares + weight);
+  const double away = (seen - seen_mean) / slope, of_slope = away * noise / std::sqrt(squares + weight);
+  return {made_mean + away, std::hypot(error, noise / std::sqrt(count), of_slope) / slope};
+}
+
 SpotObservations SpotComparison::corrected(double duration_ratio) const {
-  const std::vector<SpotBias> by = biases();
+  const std::vector<double> seen = observed(seen_), stated = errors_of(seen_);
+  std::vector<Estimate> made;
+  for (std::size_t i = 0; i < spot_observable_count; ++i) {
+    const double error = larger_known(stated[i], scatter(i) * std::sqrt(duration_ratio));
+    made.push_back(inverted(i, on_scale(i, seen[i]), error));
+  }
   SpotObservations o = seen_;
-  o.radius = divided(seen_.radius, by[0], duration_ratio);
-  o.b = divided(seen_.b, by[1], duration_ratio);
-  o.grain_diffusion = divided(seen_.grain_diffusion, by[2], duration_ratio);
-  o.outflow = divided(seen_.outflow, by[3], duration_ratio);
-  const double own = larger_known(observed_errors(seen_)[slowness], by[slowness].scatter * std::sqrt(duration_ratio));
-  const double left = 1 / seen_.speed.value - by[slowness].bias.value;
-  o.speed = left > 0 ? Estimate{1 / left, std::hypot(own, by[slowness].bias.error) / (left * left)} : Estimate{};
+  o.radius = from_logarithm(made[0]);
+  o.b = from_logarithm(made[1]);
+  o.grain_diffusion = from_logarithm(made[2]);
+  o.outflow = from_logarithm(made[3]);
+  o.speed = speed_of(made[slowness]);
   return o;
 }
 

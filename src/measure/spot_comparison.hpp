@@ -1,8 +1,9 @@
 #pragma once
 /// What estimators of the spot model's parameters make of runs whose parameters are known, taken off what they make of
-/// others (indirect inference). Pure functions.
+/// others (indirect inference: Gourieroux, Monfort and Renault, J. Appl. Econometrics 8 (1993) S85). Pure functions.
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "measure/spot_parameters.hpp"
@@ -18,48 +19,47 @@ struct SpotTruth {
   double speed = 0;           ///< μ_s Δz [length/time]
 };
 
-/// What is corrected, in that order.
-inline constexpr std::size_t spot_observable_count = 5;
+/// What is compared: R, b, b_p, Q, 1/c. The last is how much looser flow is for its flux, and can be seen as 0 or less.
 enum class SpotObservable { radius, b, grain_diffusion, outflow, slowness };
+inline constexpr std::size_t spot_observable_count = 5;
 
-/// Of R, b, b_p, Q ratios of what was observed to what made it; of the slowness 1/c a difference, for it can be
-/// observed as 0 or less. [1, or time/length]
-struct SpotBias {
-  Estimate bias;       ///< with the error of the mean over runs
-  double scatter = 0;  ///< standard deviation of one run; relative for ratios
-};
-
-/// Rounds of runs, each round with other parameters.
+/// Rounds of runs, each round with other parameters. What is seen is a line of what would be seen if the estimators
+/// were right: of logarithms, but for the slowness. Its slope is near 1 unless runs say otherwise.
 class SpotComparison {
  public:
   explicit SpotComparison(SpotObservations seen) : seen_(std::move(seen)) {}
 
-  /// What those parameters would have been seen as if the estimators were right, in grains as dense as those of the
-  /// dumps: R, b, b_p = s b/w, Q = λN/w, 1/c, in the order of SpotObservable.
+  /// What those parameters would be seen as, in grains as dense as those of the dumps: R, b, b_p = s b/w, Q = λN/w,
+  /// 1/c.
   std::vector<double> expected(const SpotTruth& made) const;
-  /// The same of what was seen.
   static std::vector<double> observed(const SpotObservations& seen);
 
-  /// Runs with the same parameters, but for their seed. Returns the names of what they do not tell, for which there
-  /// must be a number above 0 in each run (of the slowness, a number); the round counts only where there are none.
+  /// Runs with the same parameters, but for their seed; at least two. Returns the names of what they do not tell: each
+  /// run must give a number above 0, or any number for the slowness. The round counts only where nothing is missing.
   std::vector<std::string> add_round(const SpotTruth& made, const std::vector<SpotObservations>& runs);
 
-  /// By the runs of the last round. Scatter is that within all rounds, or what the estimators state, where that is
-  /// more.
-  std::vector<SpotBias> biases() const;
+  /// What the last round was seen as, over what it would be seen as; of the slowness the difference. With the error of
+  /// the mean.
+  std::vector<Estimate> biases() const;
 
-  /// What was seen in the dumps, less the biases. Errors contain those of the biases; and each is at least the scatter
-  /// of one run of the same parameters, times √duration_ratio: runs of that part of the dumps' duration. The speed is
-  /// NaN where none is left.
+  /// What was seen in the dumps, by the lines through the last two rounds. The errors are those of the dumps and of the
+  /// lines; neither is less than what runs with the same parameters scatter by. For the dumps that is the scatter times
+  /// √duration_ratio, the time that is measured of a run over that of the dumps. The speed is NaN where no slowness is
+  /// left, and its error no more than itself: it is told to a factor of two then, or not at all.
   SpotObservations corrected(double duration_ratio = 1) const;
 
  private:
-  struct Round {
-    std::vector<std::vector<double>> biases;  ///< of each observable, of each run; logarithms of ratios
+  struct Run {
+    std::size_t round;
+    double made, seen;  ///< logarithms, or slownesses
+    double stated;      ///< error of what was seen, in the same way
   };
+  double scatter(std::size_t observable) const;
+  Estimate inverted(std::size_t observable, double seen, double error) const;
+
   SpotObservations seen_;
-  std::vector<Round> rounds_;
-  std::vector<std::vector<double>> stated_;  ///< errors of each observable, of each run of all rounds; relative
+  std::size_t rounds_ = 0;
+  std::vector<std::vector<Run>> runs_{spot_observable_count};  ///< of each observable
 };
 
 }  // namespace grainvdb

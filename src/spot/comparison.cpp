@@ -224,12 +224,12 @@ void add_rows(Table& t, std::size_t round, const SpotTruth& made, const std::vec
   }
 }
 
-void add_biases(Table& t, const std::vector<SpotBias>& biases) {
+void add_biases(Table& t, const std::vector<Estimate>& biases) {
   for (std::size_t i = 0; i < spot_observable_count; ++i) {
     const bool ratio = i + 1 < spot_observable_count;
     t.numbers.push_back({.name = std::string(observables[i]) + "_bias",
-                         .value = biases[i].bias.value,
-                         .error = biases[i].bias.error,
+                         .value = biases[i].value,
+                         .error = biases[i].error,
                          .dimension = ratio ? dimension::none : dimensions[i],
                          .description = ratio ? "what the estimator makes of known spots, over what is true"
                                               : "1/speed that the estimator makes of known spots, less what is true"});

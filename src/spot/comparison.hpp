@@ -13,11 +13,11 @@
 namespace grainvdb::spot {
 
 struct ComparisonOptions {
-  std::size_t rounds = 3;          ///< at most; fewer when parameters have settled
-  std::size_t runs = 4;            ///< in each round, at least two: what they scatter by is an error
-  std::optional<double> duration;  ///< that is measured of each; that of the dumps' flow when not given [time]
-  std::optional<double> height;    ///< of the packing above the floor; all of the first frame when not given [length]
-  std::uint64_t seed = 1;          ///< of the first run; the others have those that follow
+  std::size_t rounds = 3;            ///< at most; fewer when parameters have settled
+  std::size_t runs = 4;              ///< in each round, at least two: what they scatter by is an error
+  std::optional<double> duration{};  ///< that is measured of each; that of the dumps' flow when not given [time]
+  std::optional<double> height{};    ///< of the packing above the floor; all of the first frame when not given [length]
+  std::uint64_t seed = 1;            ///< of the first run; the others have those that follow
 };
 
 /// Runs the spot file that a calibration would write, relaxation and all, in rounds of `runs`, measures each run as
