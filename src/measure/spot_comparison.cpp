@@ -10,7 +10,7 @@ namespace {
 constexpr auto slowness = static_cast<std::size_t>(SpotObservable::slowness);
 constexpr std::array<const char*, spot_observable_count> observable_names{"radius", "b", "diffusion_length", "outflow",
                                                                           "speed"};
-// Slopes of what was seen against what made it lay between 0.5 and 1.1 in runs of docs/spot_calibration.md.
+// Slopes of what was seen against what made it lie between 0.5 and 1.4 in runs of docs/spot_calibration.md.
 constexpr double slope_error = 0.3;
 
 /// Errors of what is compared, of logarithms but for the slowness.
@@ -106,28 +106,33 @@ std::vector<Estimate> SpotComparison::biases() const {
   return all;
 }
 
-// The slope is the mean of 1 and of that of the least squares, each with the weight of its error.
+// From the mean of the last round along a line. Its slope is that through the last two rounds, drawn towards 1 by as
+// much as they leave open. Other parameters change from round to round as well, so that it is never known well.
 Estimate SpotComparison::inverted(std::size_t observable, double seen, double error) const {
-  double count = 0, made_mean = 0, seen_mean = 0, squares = 0, products = 0;
-  const auto of_last = [&](auto use) {
-    for (const Run& run : runs_[observable])
-      if (run.round + 2 >= rounds_) use(run);
+  struct Mean {
+    double count = 0, made = 0, seen = 0;
   };
-  of_last([&](const Run& run) {
-    ++count;
-    made_mean += run.made;
-    seen_mean += run.seen;
-  });
-  made_mean /= count;
-  seen_mean /= count;
-  of_last([&](const Run& run) {
-    squares += (run.made - made_mean) * (run.made - made_mean);
-    products += (run.made - made_mean) * (run.seen - seen_mean);
-  });
+  std::array<Mean, 2> rounds;  // the last one first
+  for (const Run& run : runs_[observable]) {
+    const std::size_t age = rounds_ - 1 - run.round;
+    if (age >= rounds.size()) continue;
+    ++rounds[age].count;
+    rounds[age].made += run.made;
+    rounds[age].seen += run.seen;
+  }
+  for (Mean& mean : rounds)
+    for (double* sum : {&mean.made, &mean.seen}) *sum /= std::max(1.0, mean.count);
+  const auto& [last, before] = rounds;
   const double noise = scatter(observable), weight = noise * noise / (slope_error * slope_error);
-  const double slope = (products + weight) / (squares + weight);
-  const double away = (seen - seen_mean) / slope, of_slope = away * noise / std::sqrt(squares + weight);
-  return {made_mean + away, std::hypot(error, noise / std::sqrt(count), of_slope) / slope};
+  double slope = 1;
+  if (before.count > 0) {
+    const double pairs = 1 / (1 / last.count + 1 / before.count), made = last.made - before.made;
+    slope = (pairs * made * (last.seen - before.seen) + weight) / (pairs * made * made + weight);
+    slope = std::clamp(slope, 1 - 2 * slope_error, 1 + 2 * slope_error);
+  }
+  const double away = seen - last.seen;
+  return {last.made + away / slope,
+          std::hypot(error, noise / std::sqrt(last.count), slope_error * away / slope) / slope};
 }
 
 SpotObservations SpotComparison::corrected(double duration_ratio) const {

@@ -42,10 +42,11 @@ class SpotComparison {
   /// the mean.
   std::vector<Estimate> biases() const;
 
-  /// What was seen in the dumps, by the lines through the last two rounds. The errors are those of the dumps and of the
-  /// lines; neither is less than what runs with the same parameters scatter by. For the dumps that is the scatter times
-  /// √duration_ratio, the time that is measured of a run over that of the dumps. The speed is NaN where no slowness is
-  /// left, and its error no more than itself: it is told to a factor of two then, or not at all.
+  /// What was seen in the dumps, by lines through the last two rounds. The errors are those of the dumps, of the last
+  /// round and of 0.3 of the slopes; the first two are no less than what runs with the same parameters scatter by. For
+  /// the dumps that is the scatter times √duration_ratio, the time that is measured of a run over that of the dumps.
+  /// The speed is NaN where no slowness is left, and its error no more than itself: it is told to a factor of two then,
+  /// or not at all.
   SpotObservations corrected(double duration_ratio = 1) const;
 
  private:

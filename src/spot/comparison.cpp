@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,7 +29,8 @@ namespace {
 
 constexpr const char* measurement = "spot_calibration";
 constexpr const char* result_name = "spot_calibration_by_comparison";
-constexpr double filling = 1.15;  // of the time in which a spot rises through the packing: the last come, too
+constexpr double speed_reach = 3;  // by what factor spots of a round may be faster or slower than those before
+constexpr double filling = 1.15;   // of the time in which a spot rises through the packing: the last come, too
 
 /// A folder for dumps that are only looked at.
 class PassingFolder {
@@ -62,6 +64,7 @@ bool rests_first(const Pipeline& pipeline) {
 struct FlowFrames {
   std::size_t count = 0;
   double interval = 0;  ///< [time]
+  double since = 0;     ///< from the frame that is the packing to the first of them [time]
 };
 
 FlowFrames flow_frames(const Pipeline& pipeline, const FrameSource& source) {
@@ -78,7 +81,9 @@ FlowFrames flow_frames(const Pipeline& pipeline, const FrameSource& source) {
                       std::to_string(times.size()) + " frames with a time",
                       "at least two",
                       {}});
-  return {times.size(), (times.back() - times.front()) / static_cast<double>(times.size() - 1)};
+  const std::optional<double> packed = source.frames()[selected.front()].time;
+  return {times.size(), (times.back() - times.front()) / static_cast<double>(times.size() - 1),
+          times.front() - packed.value_or(times.front())};
 }
 
 /// What the runs of all rounds share.
@@ -106,15 +111,21 @@ void cut_off(SpotRun& run, double height) {
   run.packing = std::move(kept);
 }
 
-/// The run that a spot file says, for as long as is compared, from when spots have filled it.
+// Pushes pack a flow more and more, so that it is compared at the age that the dumps have where these began with the
+// packing; but not before spots have filled it.
+double first_snapshot(const FlowFrames& flow, double height, double speed) {
+  return std::ceil(std::max(filling * height / speed, flow.since) / flow.interval * (1 - 1e-12));
+}
+
+/// The run that a spot file says, for as long as is compared.
 SpotRun comparison_run(const Comparison& all, const Table& parameters) {
   const std::string file = (all.folder / "spot.yaml").string();
   write_text_file(file, calibrated_spot_file(all.pipeline, parameters, all.source));
   SpotRun run = load_spot_run(file);
   if (all.options.height) cut_off(run, *all.options.height);
   run.interval = all.flow.interval;
-  const double speed = run.parameters.hop_rate * run.parameters.step[2], height = run.container.box.length(2);
-  const double first = std::ceil(filling * height / speed / run.interval);
+  const double speed = run.parameters.hop_rate * run.parameters.step[2];
+  const double first = first_snapshot(all.flow, run.container.box.length(2), speed);
   run.from = first * run.interval;
   run.end = (first + static_cast<double>(all.flow.count) - 1) * run.interval;
   return run;
@@ -164,14 +175,23 @@ std::vector<SpotObservations> round_of_runs(const Comparison& all, const SpotRun
                     "Compare longer runs, or take the direct estimates"});
 }
 
-/// Numbers of a table replaced by those of the same name, the others as they were.
-void replace_numbers(Table& table, const std::vector<Quantity>& by) {
-  for (const Quantity& q : by)
+/// What is observed, and what follows, in a table that has such numbers.
+void replace_numbers(Table& table, const SpotObservations& by) {
+  for (const Quantity& q : spot_quantities(by, spot_parameters(by)))
     for (Quantity& old : table.numbers)
       if (old.name == q.name) {
         old.value = q.value;
         old.error = q.error;
       }
+}
+
+// A flow that is a little too dense can make spots infinitely fast, or leave no speed.
+SpotObservations within_reach(SpotObservations corrected, const SpotTruth& made) {
+  double& speed = corrected.speed.value;
+  speed = std::isfinite(speed) ? std::clamp(speed, made.speed / speed_reach, made.speed * speed_reach)
+                               : made.speed * speed_reach;
+  if (!std::isfinite(corrected.speed.error)) corrected.speed.error = speed;
+  return corrected;
 }
 
 /// The parameters of a spot file.
@@ -268,15 +288,17 @@ Table calibrate_by_comparison(const Pipeline& pipeline, const Table& direct, Fra
     const auto runs = round_of_runs(all, run, options.seed + round * options.runs);
     add_rows(result, round + 1, made, comparison.expected(made), runs);
     if (const auto missing = comparison.add_round(made, runs); !missing.empty()) refuse_untold(pipeline, missing);
-    SpotObservations corrected = comparison.corrected(duration_ratio);
-    if (!std::isfinite(corrected.speed.value)) corrected.speed = {made.speed, made.speed};
-    Table next = now;
-    replace_numbers(next, spot_quantities(corrected, spot_parameters(corrected)));
-    has_settled = settled(now, next);
-    now = std::move(next);
+    const SpotObservations corrected = comparison.corrected(duration_ratio);
+    replace_numbers(result, corrected);
+    has_settled = settled(now, result);
+    replace_numbers(now, within_reach(corrected, made));
   }
-  result.numbers = now.numbers;
   add_biases(result, comparison.biases());
+  if (!std::isfinite(number_of(result, "hop_rate").value))
+    result.remarks.emplace_back(
+        "The flow is denser than spots of any speed make it. Give a larger phi_at_rest for the direct estimate, or "
+        "take "
+        "that.");
   if (!has_settled)
     result.remarks.emplace_back("Parameters still changed by more than their errors in the last of " +
                                 std::to_string(options.rounds) + " rounds.");

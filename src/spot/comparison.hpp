@@ -14,7 +14,7 @@ namespace grainvdb::spot {
 
 struct ComparisonOptions {
   std::size_t rounds = 3;            ///< at most; fewer when parameters have settled
-  std::size_t runs = 4;              ///< in each round, at least two: what they scatter by is an error
+  std::size_t runs = 3;              ///< in each round, at least two: what they scatter by is an error
   std::optional<double> duration{};  ///< that is measured of each; that of the dumps' flow when not given [time]
   std::optional<double> height{};    ///< of the packing above the floor; all of the first frame when not given [length]
   std::uint64_t seed = 1;            ///< of the first run; the others have those that follow
@@ -29,8 +29,9 @@ struct ComparisonOptions {
 /// contain the scatter of runs. The same input gives the same table on any number of threads, on which the runs of a
 /// round are shared out. Dumps of runs lie in a new folder within `folder`, which is removed in the end.
 ///
-/// The run is measured from the time on at which the first spots have left it at the top, for as many frames as the
-/// dumps have in the flow. `progress` is called by several threads, one at a time; what it throws ends the comparison.
+/// A run is measured for as many frames as the dumps have in the flow, from as long after its start on as the first of
+/// these comes after the first frame, or, where that is more, from when spots have filled it. `progress` is called by
+/// several threads, one at a time; what it throws ends the comparison.
 ///
 /// Throws InputError where `direct` does not tell every parameter or frames of flow are too few, or where runs do not
 /// tell what is compared; ConfigError, where a parameter that results cannot be run.
