@@ -86,6 +86,25 @@ FlowFrames flow_frames(const Pipeline& pipeline, const FrameSource& source) {
           times.front() - packed.value_or(times.front())};
 }
 
+/// Of runs that are made at the same time.
+class SnapshotCount {
+ public:
+  explicit SnapshotCount(const std::function<void(std::size_t, std::size_t)>& progress) : progress_(progress) {}
+
+  void expect(std::size_t more) { all_ = done_ + more; }
+  void one_more() {
+    if (!progress_) return;
+    const std::lock_guard lock(one_at_a_time_);
+    ++done_;
+    progress_(done_, std::max(done_, all_));
+  }
+
+ private:
+  const std::function<void(std::size_t, std::size_t)>& progress_;
+  std::mutex one_at_a_time_;
+  std::size_t done_ = 0, all_ = 0;
+};
+
 /// What the runs of all rounds share.
 struct Comparison {
   const Pipeline& pipeline;
@@ -93,7 +112,7 @@ struct Comparison {
   const ComparisonOptions& options;
   FlowFrames flow;
   std::filesystem::path folder;
-  std::function<void()> snapshot_done;
+  SnapshotCount& snapshots;
 };
 
 // Without the grains above a height: what is measured lies below, and a run takes less.
@@ -160,7 +179,7 @@ std::vector<SpotObservations> round_of_runs(const Comparison& all, const SpotRun
     const std::filesystem::path folder = all.folder / ("run_" + std::to_string(k));
     SpotRun own = run;
     own.seed = first_seed + k;
-    run_spot(own, folder.string(), [&](std::size_t, std::size_t) { all.snapshot_done(); });
+    run_spot(own, folder.string(), [&](std::size_t, std::size_t) { all.snapshots.one_more(); });
     // A thread that waits for parts of a measurement must not begin another run meanwhile.
     tbb::this_task_arena::isolate([&] { seen[k] = measured(all.pipeline, folder); });
     std::filesystem::remove_all(folder);
@@ -256,34 +275,39 @@ void add_biases(Table& t, const std::vector<Estimate>& biases) {
   }
 }
 
+/// As long as was asked for, and how much longer that is than what the dumps have.
+std::pair<FlowFrames, double> measured_frames(const FlowFrames& of_dumps, const std::optional<double>& duration) {
+  if (!duration) return {of_dumps, 1};
+  FlowFrames flow = of_dumps;
+  flow.count = std::max<std::size_t>(2, static_cast<std::size_t>(std::ceil(*duration / flow.interval)) + 1);
+  return {flow, static_cast<double>(flow.count) / static_cast<double>(of_dumps.count)};
+}
+
+void add_remarks(Table& t, bool has_settled) {
+  if (!std::isfinite(number_of(t, "hop_rate").value))
+    t.remarks.emplace_back(
+        "The flow is denser than spots of any speed make it. Give a larger phi_at_rest for the direct estimate, or "
+        "take "
+        "that.");
+  if (!has_settled)
+    t.remarks.emplace_back("Parameters still changed by more than their errors in the last round: allow more of them.");
+}
+
 }  // namespace
 
 Table calibrate_by_comparison(const Pipeline& pipeline, const Table& direct, FrameSource& source,
                               const ComparisonOptions& options, const std::string& folder,
                               const std::function<void(std::size_t, std::size_t)>& progress) {
-  FlowFrames flow = flow_frames(pipeline, source);
-  double duration_ratio = 1;
-  if (options.duration) {
-    const auto wanted = static_cast<std::size_t>(std::ceil(*options.duration / flow.interval)) + 1;
-    duration_ratio = static_cast<double>(wanted) / static_cast<double>(flow.count);
-    flow.count = std::max<std::size_t>(2, wanted);
-  }
+  const auto [flow, duration_ratio] = measured_frames(flow_frames(pipeline, source), options.duration);
   const PassingFolder passing(folder);
-  std::mutex one_at_a_time;
-  std::size_t done = 0, expected_snapshots = 0;
-  const Comparison all{pipeline, source, options, flow, passing.path(), [&] {
-                         if (!progress) return;
-                         const std::lock_guard lock(one_at_a_time);
-                         progress(++done, std::max(done, expected_snapshots));
-                       }};
-  const SpotObservations seen = spot_observations(direct);
-  SpotComparison comparison(seen);
+  SnapshotCount snapshots(progress);
+  const Comparison all{pipeline, source, options, flow, passing.path(), snapshots};
+  SpotComparison comparison(spot_observations(direct));
   Table result = empty_result(direct), now = direct;
   bool has_settled = false;
   for (std::size_t round = 0; round < options.rounds && !has_settled; ++round) {
     const SpotRun run = comparison_run(all, now);
-    const auto snapshots = static_cast<std::size_t>(run.end / run.interval) + 1;
-    expected_snapshots = done + (options.rounds - round) * options.runs * snapshots;
+    snapshots.expect((options.rounds - round) * options.runs * (static_cast<std::size_t>(run.end / run.interval) + 1));
     const SpotTruth made = truth_of(run.parameters);
     const auto runs = round_of_runs(all, run, options.seed + round * options.runs);
     add_rows(result, round + 1, made, comparison.expected(made), runs);
@@ -294,14 +318,7 @@ Table calibrate_by_comparison(const Pipeline& pipeline, const Table& direct, Fra
     replace_numbers(now, within_reach(corrected, made));
   }
   add_biases(result, comparison.biases());
-  if (!std::isfinite(number_of(result, "hop_rate").value))
-    result.remarks.emplace_back(
-        "The flow is denser than spots of any speed make it. Give a larger phi_at_rest for the direct estimate, or "
-        "take "
-        "that.");
-  if (!has_settled)
-    result.remarks.emplace_back("Parameters still changed by more than their errors in the last of " +
-                                std::to_string(options.rounds) + " rounds.");
+  add_remarks(result, has_settled);
   OutputUnits(source.units(), std::nullopt).convert(result);
   return result;
 }
