@@ -19,6 +19,7 @@
 #include "cli/write_tables.hpp"
 #include "grainvdb/run.hpp"
 #include "spot/calibration.hpp"
+#include "spot/comparison.hpp"
 #include "spot/spot_file.hpp"
 #include "write/text_file.hpp"
 
@@ -29,14 +30,22 @@ constexpr const char* spot_calibrate_footer = R"(Examples:
   grainvdb spot calibrate pipelines/spot_calibrate.yaml --output calibrated
   grainvdb spot run calibrated/spot.yaml --output spot
   grainvdb spot calibrate my.yaml --frames 10: --set measure.spot_calibration.lags=8
+  grainvdb spot calibrate my.yaml --by-comparison --runs 6 --output corrected
 
 Measures what the section measure.spot_calibration of the pipeline file describes, prints the parameters of the spot
 model with their errors, and writes them with all that they come from as tables, and as DIR/spot.yaml, a file for
-'grainvdb spot run' whose packing is the first of the frames. docs/spot_calibration.md tells how they are found.)";
+'grainvdb spot run' whose packing is the first of the frames. docs/spot_calibration.md tells how they are found.
+
+The estimates hold for spots that only move grains. Pushing overlapping grains apart, as runs usually do, changes what
+is seen of them. --by-comparison runs the spot file, measures the runs as the dumps were, and takes off what the
+estimates make of known parameters, in rounds; errors then contain what such runs scatter by. It takes rounds x runs
+times as long as one run, shared out over the threads.)";
 
 struct SpotCalibrateOptions {
   PipelineArguments pipeline;
   std::string output = "calibrated";
+  bool by_comparison = false;
+  spot::ComparisonOptions comparison;
   std::size_t threads = 0;
   bool quiet = false;
 };
@@ -62,8 +71,21 @@ RunReport measured(const Pipeline& pipeline, const Plan& plan, FrameSource& sour
 
 void print_parameters(const RunReport& report) {
   RunReport shown = report;
-  std::erase_if(shown.tables, [](const Table& table) { return table.name != "spot_calibration"; });
+  std::erase_if(shown.tables, [](const Table& table) {
+    return table.name != "spot_calibration" && table.name != "spot_calibration_by_comparison";
+  });
   std::cout << cli::describe(shown);
+}
+
+/// Puts the corrected parameters first.
+void compare(const SpotCalibrateOptions& options, const Pipeline& pipeline, FrameSource& source, RunReport& report) {
+  ProgressLine line(stderr);
+  Table corrected = spot::calibrate_by_comparison(pipeline, report.tables.front(), source, options.comparison,
+                                                  options.output, [&](std::size_t done, std::size_t all) {
+                                                    check_for_interrupt();
+                                                    if (!options.quiet) line.show({done, all, "comparison runs"});
+                                                  });
+  report.tables.insert(report.tables.begin(), std::move(corrected));
 }
 
 void calibrate(const SpotCalibrateOptions& options) {
@@ -75,6 +97,10 @@ void calibrate(const SpotCalibrateOptions& options) {
   const auto source = open_input(pipeline, plan);
   RunReport report = measured(pipeline, plan, *source, options.quiet);
   write_tables(report, options.output);
+  if (options.by_comparison) {
+    compare(options, pipeline, *source, report);
+    write_tables(report, options.output);
+  }
   write_run_record(report, options.output);
   std::cerr << warnings(report);
   if (!options.quiet) print_parameters(report);
@@ -82,6 +108,31 @@ void calibrate(const SpotCalibrateOptions& options) {
   write_text_file(file, spot::calibrated_spot_file(pipeline, report.tables.front(), *source));
   spot::load_spot_run(file);  // whether it can be run
   if (!options.quiet) std::cout << "wrote " << file << "\nrun it:\n  grainvdb spot run " << file << '\n';
+}
+
+void add_comparison_options(CLI::App& command, SpotCalibrateOptions& options) {
+  spot::ComparisonOptions& comparison = options.comparison;
+  CLI::Option* switched_on =
+      command.add_flag("--by-comparison", options.by_comparison,
+                       "Correct what was found by spot runs with known parameters, relaxed, measured in the same way");
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    return command.add_option(name, value, help)->needs(switched_on);
+  };
+  add("--rounds", comparison.rounds, "Rounds of such runs, each with the parameters found before, at most")
+      ->type_name("N")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  add("--runs", comparison.runs, "Runs in a round, which differ by their seed")
+      ->type_name("N")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  add("--duration", comparison.duration, "Time that is measured of each run; that of the frames by default")
+      ->type_name("T")
+      ->check(CLI::PositiveNumber);
+  add("--height", comparison.height, "Height of their packing; that of the first frame by default")
+      ->type_name("H")
+      ->check(CLI::PositiveNumber);
+  add("--seed", comparison.seed, "Seed of the first run")->type_name("N")->capture_default_str();
 }
 
 }  // namespace
@@ -94,6 +145,7 @@ void add_spot_calibrate(CLI::App& spot) {
       ->type_name("DIR")
       ->capture_default_str();
   add_frames_option(*command, options->pipeline);
+  add_comparison_options(*command, *options);
   command->add_option("--threads", options->threads, "Threads to use; all processors by default")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));

@@ -225,30 +225,18 @@ class SpotCalibration : public Measurement {
     t.columns = {{"time", dimension::time, "time in which grains spread", o.times},
                  {"share", dimension::none, "s: spread over what it would be if a spot never came back", {}}};
     add_shares(t, o, p);
+    t.numbers = spot_quantities(o, p);
     const double volume = loosening_.grain_volume();
     const auto add = [&](const char* name, Estimate e, const Dimension& d, const char* description) {
       t.numbers.push_back(
           {.name = name, .value = e.value, .error = e.error, .dimension = d, .description = description});
     };
-    const auto times = [](double factor, const Estimate& e) { return Estimate{factor * e.value, factor * e.error}; };
-    add("radius", o.radius, dimension::length, "R_s of spots, from the velocity correlation");
     add("amplitude", amplitude, dimension::none, "A of the correlation: 1 where spots are all that moves grains");
-    add("b", o.b, dimension::length, "of dv/dz = b d2v/dx2, from the widths of profiles");
-    add("offset", offset, {0, 2, 0}, "variance of these widths at the height of the slot");
-    add("step_side", p.step, dimension::length, "of a spot along x and y, sqrt(2 b step_up)");
-    add("step_up", {o.rise}, dimension::length, "of a spot along z; chosen");
-    add("diffusion_length", o.grain_diffusion, dimension::length, "b_p of grains along y");
-    add("share", p.share, dimension::none, "s, in the slope of the variance over the lags");
-    add("influence", p.influence, dimension::none, "w: grains move by 1/w of a spot's step");
+    add("offset", offset, {0, 2, 0}, "variance of the widths of profiles at the height of the slot");
+    const auto times = [](double factor, const Estimate& e) { return Estimate{factor * e.value, factor * e.error}; };
     add("phi", times(volume, o.number_density), dimension::none, "packing fraction in flow");
     add("drop", times(1 / loosened.at_rest.value, loosened.drop), dimension::none,
         "grains that are missing in flow, as a share of those at rest");
-    add("grains", p.grains, dimension::none, "N, in a spot");
-    add("volume", p.volume, dimension::none, "V_s/V_p = N/w, free volume of a spot in grain volumes");
-    add("outflow", o.outflow, dimension::rate, "Q, grains per time, at five heights of the box");
-    add("insertion_rate", p.insertion_rate, dimension::rate, "lambda = Q w/N, spots per time");
-    add("speed", o.speed, dimension::velocity, "of spots upward, from the density drop");
-    add("hop_rate", p.hop_rate, dimension::rate, "mu_s = speed/step_up, steps of a spot per time");
     add_remarks(loosened, t);
     return t;
   }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
 #include "base/nan.hpp"
 #include "grainvdb/spot_diffusion.hpp"
@@ -74,6 +76,47 @@ SpotParameterEstimates spot_parameters(const SpotObservations& o) {
   return {estimate(&Outputs::step),          estimate(&Outputs::share),  estimate(&Outputs::influence),
           estimate(&Outputs::grains),        estimate(&Outputs::volume), estimate(&Outputs::hop_rate),
           estimate(&Outputs::insertion_rate)};
+}
+
+std::vector<Quantity> spot_quantities(const SpotObservations& o, const SpotParameterEstimates& p) {
+  std::vector<Quantity> all;
+  const auto add = [&](const char* name, const Estimate& e, const Dimension& d, const char* description) {
+    all.push_back({.name = name, .value = e.value, .error = e.error, .dimension = d, .description = description});
+  };
+  add("radius", o.radius, dimension::length, "R_s of spots, from the velocity correlation");
+  add("b", o.b, dimension::length, "of dv/dz = b d2v/dx2, from the widths of profiles");
+  add("step_side", p.step, dimension::length, "of a spot along x and y, sqrt(2 b step_up)");
+  add("step_up", {o.rise}, dimension::length, "of a spot along z; chosen");
+  add("diffusion_length", o.grain_diffusion, dimension::length, "b_p of grains along y");
+  add("share", p.share, dimension::none, "s, in the slope of the variance over the lags");
+  add("influence", p.influence, dimension::none, "w: grains move by 1/w of a spot's step");
+  add("grains", p.grains, dimension::none, "N, in a spot");
+  add("volume", p.volume, dimension::none, "V_s/V_p = N/w, free volume of a spot in grain volumes");
+  add("outflow", o.outflow, dimension::rate, "Q, grains per time, at five heights of the box");
+  add("insertion_rate", p.insertion_rate, dimension::rate, "lambda = Q w/N, spots per time");
+  add("speed", o.speed, dimension::velocity, "of spots upward, from the density drop");
+  add("hop_rate", p.hop_rate, dimension::rate, "mu_s = speed/step_up, steps of a spot per time");
+  return all;
+}
+
+SpotObservations spot_observations(const Table& table) {
+  const auto quantity = [&](const std::string& name) {
+    for (const Quantity& q : table.numbers)
+      if (q.name == name) return Estimate{q.value, q.error};
+    throw std::out_of_range("a table without " + name);
+  };
+  SpotObservations o;
+  o.radius = quantity("radius");
+  o.b = quantity("b");
+  o.grain_diffusion = quantity("diffusion_length");
+  o.outflow = quantity("outflow");
+  o.speed = quantity("speed");
+  o.rise = quantity("step_up").value;
+  const Estimate phi = quantity("phi");
+  const double r = o.radius.value, n = quantity("grains").value / (4 * std::numbers::pi / 3 * r * r * r);
+  o.number_density = {n, n * phi.error / phi.value};
+  if (!table.columns.empty()) o.times = table.columns.front().values;
+  return o;
 }
 
 }  // namespace grainvdb

@@ -2,6 +2,7 @@
 /// The parameters of the spot model from what is measured of a flow. Pure functions.
 #include <vector>
 
+#include "grainvdb/table.hpp"
 #include "measure/estimate.hpp"
 
 namespace grainvdb {
@@ -31,5 +32,12 @@ struct SpotParameterEstimates {
 
 /// NaN where what it takes is NaN, or not positive.
 SpotParameterEstimates spot_parameters(const SpotObservations& observed);
+
+/// Both as numbers of a table: what is observed, and what follows.
+std::vector<Quantity> spot_quantities(const SpotObservations& observed, const SpotParameterEstimates& parameters);
+
+/// The observations that a table with these numbers, `phi` and a column `time` was made of. Throws std::out_of_range
+/// where one of them is missing.
+SpotObservations spot_observations(const Table& table);
 
 }  // namespace grainvdb

@@ -218,10 +218,10 @@ std::string calibrated_spot_file(const Pipeline& pipeline, const Table& calibrat
   const double diameter = 2 * frame.particles.radius.front();
   const Box box = container_of(pipeline, frame, grains);
   const double radius = parameter(calibration, "radius").value;
-  return "# The spot model of " + pipeline.file + ", by grainvdb spot calibrate. Numbers in the units of the dumps.\n" +
-         "grainvdb: 1\n\n" + packing_text(pipeline, frames.front()) + container_text(pipeline, box) +
-         spots_text(pipeline, calibration, diameter) + relaxation_text(box, radius, diameter) +
-         output_text(frames, source);
+  return "# The spot model of " + pipeline.file + ", by grainvdb spot calibrate: " + calibration.description +
+         ".\n# Numbers in the units of the dumps.\ngrainvdb: 1\n\n" + packing_text(pipeline, frames.front()) +
+         container_text(pipeline, box) + spots_text(pipeline, calibration, diameter) +
+         relaxation_text(box, radius, diameter) + output_text(frames, source);
 }
 
 }  // namespace grainvdb::spot

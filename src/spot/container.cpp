@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace grainvdb::spot {
 
@@ -19,6 +20,27 @@ std::optional<std::array<double, 2>> from_rim(const Container& container, const 
   if (r >= half) return std::nullopt;
   if (r == 0) return std::array<double, 2>{-half, 0};
   return std::array<double, 2>{dx - half * dx / r, dy - half * dy / r};
+}
+
+double room_over_orifice(const Container& container, double height, double distance) {
+  if (!container.orifice || std::abs(height) >= distance) return std::numeric_limits<double>::infinity();
+  return std::max(0.0, 0.5 * container.orifice->width - std::sqrt(distance * distance - height * height));
+}
+
+Vec3 kept_off_plate(const Container& container, const Vec3& x, Vec3 step, double distance) {
+  const double height = x[2] - container.box.lo[2], room = room_over_orifice(container, height + step[2], distance);
+  if (!std::isfinite(room)) return step;
+  const Orifice& hole = *container.orifice;
+  const double dx = container.box.minimum_image(0, x[0] - hole.centre[0]);
+  const bool slot = hole.shape == Orifice::Shape::slot;
+  const double dy = slot ? 0 : container.box.minimum_image(1, x[1] - hole.centre[1]);
+  const double rounding = 1e-9 * hole.width;
+  if (std::hypot(dx, dy) > room_over_orifice(container, height, distance) + rounding) return step;
+  const double end_x = dx + step[0], end_y = slot ? 0 : dy + step[1], r = std::hypot(end_x, end_y);
+  if (r <= room) return step;
+  step[0] = end_x * room / r - dx;
+  if (!slot) step[1] = end_y * room / r - dy;
+  return step;
 }
 
 Vec3 push_from_walls(const Container& container, const Vec3& x, double diameter) {

@@ -28,6 +28,15 @@ struct Container {
 /// over the plate [length].
 std::optional<std::array<double, 2>> from_rim(const Container& container, const Vec3& x);
 
+/// How far from the middle of the orifice points at that height above the floor can be that are at least `distance`
+/// from the plate beside it: along x for a slot; infinite without an orifice, and where all are, 0 where none is
+/// [length].
+double room_over_orifice(const Container& container, double height, double distance);
+
+/// A step from x, cut towards the middle of the orifice so that its end is no nearer than `distance` to the plate
+/// beside it. Where x is nearer already, over the plate, the step is what it was.
+Vec3 kept_off_plate(const Container& container, const Vec3& x, Vec3 step, double distance);
+
 /// Σ δ n over the walls, the floor and the rim of the orifice that a sphere of this diameter overlaps: what moves it
 /// out of each [length].
 Vec3 push_from_walls(const Container& container, const Vec3& x, double diameter);

@@ -1,5 +1,6 @@
 #include "spot/run_spot.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -77,16 +78,25 @@ class VoidFrames {
   DumpFrame before_;
 };
 
+/// The number of the first snapshot after that of the start.
+std::size_t first_after_start(const SpotRun& run) {
+  const double intervals = run.from / run.interval * (1 - 1e-12);
+  return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(intervals)));
+}
+
 template <class Frames>
 SpotReport write_frames(const SpotRun& run, Frames frames, const std::filesystem::path& folder,
                         const std::function<void(std::size_t, std::size_t)>& progress) {
   SpotReport report;
   report.particles_at_start = run.packing.id.size();
+  const std::size_t first = first_after_start(run);
   const auto last = static_cast<std::size_t>(std::floor(run.end / run.interval * (1 + 1e-12)));
   for (std::size_t k = 0; k <= last; ++k) {
     const DumpFrame frame = frames.next(static_cast<double>(k) * run.interval);
-    write_text_file((folder / dump_name(k)).string(), dump_text(frame, static_cast<std::int64_t>(k), run.units));
-    ++report.snapshots;
+    if (k == 0 || k >= first) {
+      write_text_file((folder / dump_name(k)).string(), dump_text(frame, static_cast<std::int64_t>(k), run.units));
+      ++report.snapshots;
+    }
     report.particles_at_end = frame.id.size();
     if (progress) progress(k + 1, last + 1);
     if (frame.id.empty()) break;

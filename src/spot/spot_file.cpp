@@ -75,6 +75,7 @@ SpotParameters read_spots(const Values& v, double diameter) {
   p.direction =
       v.get<std::string>("spots.direction") == "up" ? SpotParameters::Direction::up : SpotParameters::Direction::any;
   p.wall_distance = v.get<double>("spots.wall_distance");
+  p.floor_distance = v.get<double>("spots.floor_distance");
   if (v.has_section("spots.bias"))
     p.bias = Bias{v.get<double>("spots.bias.exponent"), v.get<double>("spots.bias.volume"),
                   v.get<double>("spots.bias.fewest")};
@@ -202,6 +203,12 @@ void check_snapshots(const Values& v, const SpotRun& run) {
                        print_number(run.interval),
                        "at most output.end, " + print_number(run.end),
                        {}});
+  if (run.from > run.end * (1 + length_tolerance))
+    throw ConfigError({v.where("output.from"),
+                       "there would be no snapshot but that of the start",
+                       print_number(run.from),
+                       "at most output.end, " + print_number(run.end),
+                       {}});
 }
 
 }  // namespace
@@ -216,6 +223,7 @@ SpotRun load_spot_run(const std::string& file, const std::vector<std::string>& o
   run.seed = static_cast<std::uint64_t>(v.get<std::int64_t>("seed"));
   run.interval = v.get<double>("output.interval");
   run.end = v.get<double>("output.end");
+  run.from = v.get<double>("output.from");
   check_snapshots(v, run);
   run.units = v.find<std::string>("output.units").value_or("");
   run.packing = make_packing(v, file, run);

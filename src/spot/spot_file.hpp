@@ -27,6 +27,7 @@ struct SpotRun {
   std::uint64_t seed = 1;
   double interval = 0;  ///< between snapshots [time]
   double end = 0;       ///< of the run [time]
+  double from = 0;      ///< no snapshots before but that of the start [time]
   std::string units;
   std::string resolved;      ///< the file as YAML with all defaults
   std::size_t left_out = 0;  ///< grains of the dump that lie outside the container

@@ -74,11 +74,13 @@ void SpotModel::insert_spot() {
   const Orifice& hole = *container_.orifice;
   Vec3 spot{hole.centre[0], hole.centre[1], box.lo[2] - parameters_.entry_depth};
   const bool spread = parameters_.entry == SpotParameters::Entry::spread;
+  const double room = room_over_orifice(container_, -parameters_.entry_depth, parameters_.floor_distance);
+  const double half = std::min(0.5 * hole.width, room);
   if (hole.shape == Orifice::Shape::slot) {
-    if (spread) spot[0] += hole.width * (random_.uniform() - 0.5);
+    if (spread) spot[0] += 2 * half * (random_.uniform() - 0.5);
     spot[1] = random_.uniform(box.lo[1], box.hi[1]);
   } else if (spread) {
-    const double r = 0.5 * hole.width * std::sqrt(random_.uniform()), angle = 2 * std::numbers::pi * random_.uniform();
+    const double r = half * std::sqrt(random_.uniform()), angle = 2 * std::numbers::pi * random_.uniform();
     spot[0] += r * std::cos(angle);
     spot[1] += r * std::sin(angle);
   }
@@ -96,8 +98,9 @@ Vec3 SpotModel::draw_step() {
   return step;
 }
 
-// The step, cut so that the spot keeps its distance from side walls.
+// The step, cut so that the spot keeps its distance from the floor and side walls.
 Vec3 SpotModel::kept_inside(const Vec3& spot, Vec3 step) const {
+  step = kept_off_plate(container_, spot, step, parameters_.floor_distance);
   const Box& box = container_.box;
   const int axes = parameters_.direction == SpotParameters::Direction::any ? 3 : 2;
   for (int a = 0; a < axes; ++a) {

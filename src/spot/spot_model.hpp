@@ -43,6 +43,8 @@ struct SpotParameters {
   double entry_depth = 0;  ///< how far below the floor they enter, at most 2 diameters [length]
   Direction direction = Direction::up;
   double wall_distance = 0;  ///< d_w: spots stay that far from side walls; may be negative [length]
+  /// How far spots stay from the floor beside the orifice; 0: they pass over it and push grains onto it [length]
+  double floor_distance = 0;
   Relaxation relaxation;
   std::optional<Bias> bias;
 };

@@ -120,6 +120,10 @@ void add_spots(Schema& s) {
                               0.0);
   wall.unit = "length";
   s.keys.push_back(wall);
+  s.keys.push_back(with_default(
+      zero_allowed(positive("spots", "floor_distance", "length",
+                            "Spots stay that far from the floor beside the orifice; 0: they pass over it.")),
+      0.0));
   s.sections.push_back(
       {"spots.bias", "Steps are taken with a probability ∝ p^exponent, p the grains within the radius after it."});
   s.keys.push_back(with_default(zero_allowed(positive("spots.bias", "exponent", "1", "Of p.")), 3.0));
@@ -157,6 +161,8 @@ Schema make_spot_schema() {
   s.sections.push_back({"output", "Snapshots.", true});
   s.keys.push_back(required(positive("output", "interval", "time", "Between snapshots.")));
   s.keys.push_back(required(positive("output", "end", "time", "Of the run.")));
+  s.keys.push_back(with_default(
+      zero_allowed(positive("output", "from", "time", "No snapshot before that time but the one of the start.")), 0.0));
   KeyInfo units =
       key("output", "units", ValueType::text, "Unit system that the dumps name; that of the packing's dump, or lj.");
   for (const UnitSystem& system : unit_systems()) units.choices.push_back(system.name);

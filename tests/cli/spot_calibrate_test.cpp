@@ -51,6 +51,21 @@ TEST(SpotCalibrate, MakesAFileThatRuns) {
   EXPECT_THAT(spots.out, HasSubstr("2 snapshots until time 0.3 in spot"));
 }
 
+// Two short runs of a low packing: what they tell is rough, the estimates of the sample silo are too.
+TEST(SpotCalibrate, CorrectsByComparison) {
+  const Folder folder;
+  const CommandResult result = calibrate(folder, {"--by-comparison", "--rounds", "1", "--runs", "2", "--duration",
+                                                  "0.6", "--height", "18", "--seed", "3"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("table spot_calibration_by_comparison: 2 rows"), HasSubstr("\n  radius_bias "),
+                    HasSubstr("table spot_calibration: "), HasSubstr("wrote c/spot.yaml\n")));
+  EXPECT_THAT(folder.names_in("c"), ElementsAre("run.json", "spot.yaml", "tables", "tables.h5"));
+  const CommandResult alone = calibrate(folder, {"--runs", "4"});
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.err, HasSubstr("--by-comparison"));
+}
+
 TEST(SpotCalibrate, IsQuietWhenAsked) {
   const Folder folder;
   const CommandResult result = calibrate(folder, {"--quiet", "--threads", "1"});

@@ -67,9 +67,8 @@ double share(const spot::SpotParameters& p, double steps) {
 }
 
 /// w b_p/b of particles, b_p = ⟨Δx²⟩/(2⟨-Δz⟩), over that many independent rounds of `steps` steps.
-Measured measured_share(double steps, int rounds) {
+Measured measured_share(double steps, int rounds, spot::SpotParameters p = gentle_spots()) {
   const Box box{{0, 0, 0}, {14, 14, 60}, {true, true, true}};
-  spot::SpotParameters p = gentle_spots();
   p.count = 400;
   spot::SpotModel model({box, std::nullopt}, spot::poisson_packing(box, 0.05, 1, 31), p, 32);
   Displacements displacements(model);
@@ -109,6 +108,17 @@ TEST(SpotDiffusion, Is64PerCentOf1OverWInTheLongRun) {
   const Measured s = measured_share(300, 16);
   EXPECT_LT(s.error, 0.02);
   EXPECT_NEAR(s.value, share(gentle_spots(), 300), 4 * s.error);
+}
+
+// Over the whole of a passage, too, where spots hardly leave to the sides while they pass: b = 0.032 d, b/R = 0.012.
+TEST(SpotDiffusion, IsOneOverWWhereSpotsRiseStraight) {
+  spot::SpotParameters p = gentle_spots();
+  p.step = {0.08, 0.08, 0.1};
+  EXPECT_GT(share(p, 300), 0.95);
+  const Measured s = measured_share(300, 16, p);
+  EXPECT_LT(s.error, 0.025);
+  EXPECT_NEAR(s.value, share(p, 300), 4 * s.error);
+  EXPECT_NEAR(s.value, 1, 0.05 + 4 * s.error);
 }
 
 }  // namespace

@@ -91,6 +91,8 @@ TEST(SpotFile, RefusesWhatWouldRunAndMeanNothing) {
   EXPECT_THROW(load_spot_run(write(folder, biased), {"spots.direction=any"}), ConfigError);
   EXPECT_THAT(refusal({"packing.random.phi=1e-6"}), HasSubstr("there is no grain in the packing"));
   EXPECT_THAT(refusal({"output.interval=2"}), HasSubstr("no snapshot but that of the start"));
+  EXPECT_THAT(refusal({"output.from=2"}), HasSubstr("no snapshot but that of the start"));
+  EXPECT_THAT(refusal({"spots.floor_distance=-1"}), HasSubstr("is too small"));
 }
 
 TEST(SpotFile, AllowsAnOrificeAsWideAsTheFloor) {
@@ -150,6 +152,24 @@ TEST(SpotRun, WritesDumpsThatAreReadLikeAnyOther) {
     }
   }
   EXPECT_THROW(run_spot(run, out), ConfigError);  // two runs in one folder would be read as one
+}
+
+std::string contents(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream all;
+  all << in.rdbuf();
+  return all.str();
+}
+
+// Those that are written are the same.
+TEST(SpotRun, LeavesOutSnapshotsBeforeATime) {
+  const testing::TemporaryFolder folder;
+  const std::string file = write(folder, text), all = folder.path() + "/all", late = folder.path() + "/late";
+  run_spot(load_spot_run(file), all);
+  EXPECT_EQ(run_spot(load_spot_run(file, {"output.from=0.9"}), late).snapshots, 3U);
+  EXPECT_FALSE(std::filesystem::exists(late + "/spot_0000001.dump"));
+  for (const std::string name : {"/spot_0000000.dump", "/spot_0000002.dump", "/spot_0000003.dump", "/drained.txt"})
+    EXPECT_EQ(contents(late + name), contents(all + name)) << name;
 }
 
 TEST(SpotRun, TakesAPackingFromADump) {

@@ -150,6 +150,28 @@ TEST(SpotModel, SpotsKeepTheirDistanceFromWalls) {
   EXPECT_DOUBLE_EQ(widest(-1.5), 8.5);
 }
 
+// Not nearer to the plate beside the slot than that: a slot of 5 leaves nothing of 2.6, and spots rise in its middle
+// first.
+TEST(SpotModel, SpotsKeepTheirDistanceFromTheFloor) {
+  SpotParameters p = testing::published_spots();
+  p.relaxation.every = 0;
+  p.entry_depth = 2;
+  const auto nearest = [&](double distance) {
+    p.floor_distance = distance;
+    SpotModel model(silo(), packing(), p, 6);
+    double least = 1e9;
+    for (int k = 0; k < 100; ++k) {
+      model.run_events(500);
+      for (const Vec3& s : model.spots())
+        least = std::min(least, std::hypot(std::max(0.0, 2.5 - std::abs(s[0])), s[2]));
+    }
+    return least;
+  };
+  EXPECT_LT(nearest(0), 0.1);
+  EXPECT_NEAR(nearest(1.5), 1.5, 1e-9);
+  EXPECT_NEAR(nearest(2.6), 2.5, 0.01);  // in the plane of the floor, or up to half a step of 0.1 off it
+}
+
 // A bias leads spots to where the particles are: with the right half of the container empty they stay in the left one.
 TEST(SpotModel, ABiasLeadsSpotsTowardsParticles) {
   Packing half{1, {}, {}};
