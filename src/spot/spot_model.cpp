@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include <hwy/cache_control.h>
+
 namespace grainvdb::spot {
 namespace {
 
@@ -49,7 +51,9 @@ SpotModel::Event SpotModel::draw_event() {
   if (choice < 0 || spots_.empty()) return event;
   const std::size_t k = std::min(static_cast<std::size_t>(choice / parameters_.hop_rate), spots_.size() - 1);
   event.spot = k;
-  if (!parameters_.bias) event.step = kept_inside(spots_[k], draw_step());
+  if (!parameters_.bias) event.step = draw_step();
+  // It is one of many and will be needed in a moment.
+  hwy::Prefetch(&spots_[k]);
   return event;
 }
 
@@ -144,7 +148,7 @@ void SpotModel::step_spot(std::size_t k, const Vec3& drawn) {
   // Grains that hang in the orifice when all others have gone still meet spots.
   const double top = std::max(particles_.top(), container_.box.lo[2] + particles_.diameter());
   if (!container_.box.periodic[2] && spot[2] >= top) return remove_spot(k);
-  const std::optional<Vec3> step = parameters_.bias ? biased_step(spot) : drawn;
+  const std::optional<Vec3> step = parameters_.bias ? biased_step(spot) : kept_inside(spot, drawn);
   if (!step) return remove_spot(k);
   const Vec3 centre = middle_of(spot, *step);
   for (int a = 0; a < 3; ++a) spot[a] = container_.box.wrap(a, spot[a] + (*step)[a]);

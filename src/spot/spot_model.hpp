@@ -87,7 +87,7 @@ class SpotModel {
   struct Event {
     double time = 0;
     std::optional<std::size_t> spot;  ///< that steps; none: one enters
-    Vec3 step{};                      ///< not known yet with a bias
+    Vec3 step{};                      ///< before walls cut it; not known yet with a bias
   };
   Event draw_event();
   void next_event();

@@ -22,8 +22,12 @@ struct CellRange {
   int first = 0;
   int count = 0;
 };
+/// Of a number that is not below -n.
+HWY_INLINE int rounded_down(double x, int n) {
+  return static_cast<int>(x + n) - n;
+}
 HWY_INLINE CellRange cells_between(double lo, double hi, int n, bool periodic) {
-  int first = static_cast<int>(std::floor(lo)), last = static_cast<int>(std::floor(hi));
+  int first = rounded_down(std::max<double>(lo, -n), n), last = rounded_down(hi, n);
   if (periodic) return {first, std::min(last - first + 1, n)};
   first = std::clamp(first, 0, n - 1);
   last = std::clamp(last, 0, n - 1);
@@ -222,14 +226,15 @@ std::size_t sweep(const CellView& cells, Ball& ball, const Passage& passage, con
   const VI marked = same(Site{{}, Site::in_zone});
   const VF unit = hn::LoadDup128(df, cells.unit.data());
   const VF inner2 = hn::Set(df, square(passage.radius)), outer2 = hn::Set(df, square(ball.radius));
-  VI count = hn::Zero(di);  // minus the sites moved, in every lane of a site
+  const VI one = hn::Set(di, 1);
+  VI count = hn::Zero(di);  // of the sites moved, in every lane of a site
   std::int32_t* zone = lists.zone;
   for_each_register(cells, ball, [&](std::size_t place, std::size_t cell) HWY_ATTR {
     const VI sites = load_sites_at(cells.sites + place);
     const VF r2 = squared_distance(sites, centre, unit);
     const auto inner = hn::RebindMask(di, hn::Lt(r2, inner2));
-    count = hn::Add(count, hn::VecFromMask(di, inner));
-    VI moved = hn::Add(sites, hn::IfThenElseZero(inner, by));
+    count = hn::IfThenElse(inner, hn::Add(count, one), count);
+    VI moved = hn::IfThenElse(inner, hn::Add(sites, by), sites);
     if constexpr (limited) moved = hn::Min(hn::Max(moved, lowest), highest);
     const VI from = kept ? load_sites_at(cells.listed_at + place) : same(cells.middles[cell]);
     auto away = hn::Gt(hn::Abs(hn::Sub(moved, from)), trigger);
@@ -248,7 +253,7 @@ std::size_t sweep(const CellView& cells, Ball& ball, const Passage& passage, con
       }
   });
   if constexpr (zoned) lists.zone_count = static_cast<std::size_t>(zone - lists.zone);
-  return static_cast<std::size_t>(-hn::GetLane(hn::SumOfLanes(di, count))) / 4;
+  return static_cast<std::size_t>(hn::GetLane(hn::SumOfLanes(di, count))) / 4;
 }
 
 using Quad = hn::FixedTag<std::int32_t, 4>;
