@@ -6,6 +6,7 @@
 #define HWY_TARGET_INCLUDE "spot/push_kernel.cpp"
 #include <hwy/foreach_target.h>
 //
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -117,12 +118,20 @@ HWY_INLINE void add_pushes(const Site* sites, const Site& self, const std::int32
   }
 }
 
+constexpr std::size_t ahead = 12;
+
 // Few have more than eight neighbours, and nobody can guess who: theirs come afterwards.
 void PushApart(const Site* sites, const NearView& near, std::span<const std::int32_t> places, const PushLaw& law,
                Site* pushes, std::int32_t* many) {
   std::size_t with_many = 0;
   for (std::size_t k = 0; k < places.size(); ++k) {
     const auto i = static_cast<std::size_t>(places[k]);
+    // Lists lie farther apart than the processor reads ahead.
+    if (k + ahead < places.size()) {
+      const auto later = static_cast<std::size_t>(places[k + ahead]);
+      hwy::Prefetch(near.group_of(later, 0));
+      hwy::Prefetch(near.counts + later);
+    }
     Sums sums{hn::Zero(di), hn::Zero(di), hn::Zero(di)};
     add_pushes(sites, sites[i], near.group_of(i, 0), law, sums);
     store_sums(sums, pushes + k);
@@ -131,6 +140,8 @@ void PushApart(const Site* sites, const NearView& near, std::span<const std::int
   }
   for (std::size_t m = 0; m < with_many; ++m) {
     const auto k = static_cast<std::size_t>(many[m]), i = static_cast<std::size_t>(places[k]);
+    if (m + ahead < with_many)
+      hwy::Prefetch(near.group_of(static_cast<std::size_t>(places[static_cast<std::size_t>(many[m + ahead])]), 1));
     Sums sums{hn::Zero(di), hn::Zero(di), hn::Zero(di)};
     for (std::size_t g = 1; g * NearView::group < static_cast<std::size_t>(near.counts[i]); ++g)
       add_pushes(sites, sites[i], near.group_of(i, g), law, sums);
