@@ -14,8 +14,9 @@ constexpr double depth = 8, phi = 0.58;
 
 /// Whether a row of a list holds an index.
 bool lists(const spot::NearView& near, std::size_t i, std::size_t j) {
-  const std::int32_t* row = near.members + i * near.capacity;
-  return std::find(row, row + near.counts[i], static_cast<std::int32_t>(j)) != row + near.counts[i];
+  for (std::size_t k = 0; k < static_cast<std::size_t>(near.counts[i]); ++k)
+    if (near.at(i, k) == static_cast<std::int32_t>(j)) return true;
+  return false;
 }
 
 void look_at_pairs(const spot::SpotModel& model, const std::vector<Vec3>& x, Breakdowns& found) {

@@ -2,44 +2,57 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace grainvdb::spot {
 namespace {
 
-constexpr double skin_in_diameters = 0.3;
+constexpr double skin_in_diameters = 0.12;
 // Beyond walls there is room for the grains that are pushed there, and for those that fall through the floor.
 constexpr double margin_in_diameters = 2;
 constexpr double cell_in_diameters = 2;
+// Of places in a cell at first: what a dense packing needs.
+constexpr std::size_t first_capacity = 16;
+// Kernels write registers in full.
+constexpr std::size_t spare = 16;
+// Distances are compared in single precision: a particle counts that is farther away by some 1e-6 of the radius.
+constexpr double slack_in_diameters = 1e-5;
+// As a distance, a mark must be nothing where a particle is, and beyond every radius where a place is empty.
+constexpr double mark_in_diameters = 1e-5;
 // Differences wrap at 2³² counts: a period is as long as that. Along other axes none exceeds 2³¹.
 constexpr double period_counts = 0x1p32, open_counts = 0x1p31;
+constexpr std::int32_t no_lower = std::numeric_limits<std::int32_t>::min();
+constexpr std::int32_t no_upper = std::numeric_limits<std::int32_t>::max();
 
 std::uint32_t as_unsigned(std::int32_t counts) {
   return static_cast<std::uint32_t>(counts);
 }
+std::int32_t as_signed(std::uint32_t counts) {
+  return static_cast<std::int32_t>(counts);
+}
+std::size_t index(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
 
 }  // namespace
 
-ParticleStore::ParticleStore(const Box& box, const Packing& packing, Lists lists, double below_floor)
-    : box_(box), diameter_(packing.diameter), lists_(lists), skin_(skin_in_diameters * packing.diameter) {
-  set_scales(below_floor);
-  size_ = packing.id.size();
-  id_ = packing.id;
-  sites_.reserve(size_);
-  for (const Vec3& x : packing.position) {
-    Site site = site_at(x);
-    for (std::size_t a = 0; a < 3; ++a) site.at[a] = std::clamp(site.at[a], limits_.lowest[a], limits_.highest[a]);
-    sites_.push_back(site);
-  }
-  cell_of_.assign(size_, 0);
+ParticleStore::ParticleStore(const Box& box, const Packing& packing, Neighbours neighbours, const Floor& floor)
+    : box_(box), diameter_(packing.diameter), neighbours_(neighbours), skin_(skin_in_diameters * packing.diameter) {
+  set_scales(floor);
   make_cells();
-  compact();
+  std::vector<Mover> particles;
+  for (std::size_t i = 0; i < packing.id.size(); ++i) {
+    Site site = site_at(packing.position[i]);
+    for (std::size_t a = 0; a < 3; ++a) site.at[a] = std::clamp(site.at[a], limits_.lowest[a], limits_.highest[a]);
+    particles.push_back({site, packing.id[i]});
+  }
+  fill(std::move(particles));
 }
 
-void ParticleStore::set_scales(double below_floor) {
+void ParticleStore::set_scales(const Floor& floor) {
   // A third of the skin, most of it along z, where particles drift.
-  const double third = skin_ / 3;
+  const double third = neighbours_ == Neighbours::listed ? skin_ / 3 : 0;
   const Vec3 share{0.37, 0.37, 0.85};
   for (std::size_t a = 0; a < 3; ++a) {
     const bool periodic = box_.periodic[a];
@@ -53,17 +66,36 @@ void ParticleStore::set_scales(double below_floor) {
     cells_.edge[a] = length / cells_.cells[a];
     cells_.unit[a] = static_cast<float>(unit_[a]);
     cells_.periodic[a] = periodic;
-    limits_.trigger[a] = static_cast<std::int32_t>(share[a] * third / unit_[a]);
-    limits_.lowest[a] = std::numeric_limits<std::int32_t>::min();
-    limits_.highest[a] = std::numeric_limits<std::int32_t>::max();
+    limits_.trigger[a] = static_cast<std::int32_t>(third > 0 ? share[a] * third / unit_[a]
+                                                             : std::min(0.5 * cells_.per_cell[a] + 1, open_counts - 1));
+    limits_.lowest[a] = limits_.exit[a] = no_lower;
+    limits_.highest[a] = no_upper;
     if (periodic) continue;
-    const double below = a == 2 ? below_floor : 0;
+    const double below = a == 2 ? floor.sinking : 0;
     limits_.lowest[a] = static_cast<std::int32_t>((margin - below) / unit_[a]);
     limits_.highest[a] = static_cast<std::int32_t>((length - margin) / unit_[a]);
   }
-  cells_.slack = third;
-  limits_.lowest[3] = std::numeric_limits<std::int32_t>::min();  // stamps are left alone
-  limits_.highest[3] = limits_.trigger[3] = std::numeric_limits<std::int32_t>::max();
+  cells_.unit[3] = static_cast<float>(mark_in_diameters * diameter_);
+  cells_.slack = third + slack_in_diameters * diameter_;
+  limits_.lowest[3] = limits_.exit[3] = no_lower;
+  limits_.highest[3] = limits_.trigger[3] = no_upper;
+  limits_without_exit_ = limits_;
+  if (!box_.periodic[2] && std::isfinite(floor.exit))
+    limits_.exit[2] = static_cast<std::int32_t>(std::ceil((margin_in_diameters * diameter_ - floor.exit) / unit_[2]));
+}
+
+void ParticleStore::make_cells() {
+  const auto middle = [&](std::size_t a, int cell) {
+    return as_signed(static_cast<std::uint32_t>((cell + 0.5) * cells_.per_cell[a]));
+  };
+  for (int i = 0; i < cells_.cells[0]; ++i)
+    for (int j = 0; j < cells_.cells[1]; ++j)
+      for (int k = 0; k < cells_.cells[2]; ++k) middles_.push_back({{middle(0, i), middle(1, j), middle(2, k)}});
+  rows_.assign(middles_.size(), 0);
+  layer_counts_.assign(index(cells_.cells[2]), 0);
+  cells_.middles = middles_.data();
+  cells_.rows = rows_.data();
+  cells_.capacity = first_capacity;
 }
 
 Vec3 ParticleStore::position_of(const Site& site) const {
@@ -72,14 +104,33 @@ Vec3 ParticleStore::position_of(const Site& site) const {
   return x;
 }
 
+ParticleStore::Bounds ParticleStore::bounds(double distance) const {
+  Bounds result{{no_lower, no_lower, no_lower}, {no_upper, no_upper, no_upper}};
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (box_.periodic[a]) continue;
+    const double reach = (margin_in_diameters * diameter_ + distance) / unit_[a];
+    result.lowest[a] = static_cast<std::int32_t>(std::ceil(reach));
+    result.highest[a] = static_cast<std::int32_t>(open_counts - 1 - std::ceil(reach));
+  }
+  return result;
+}
+
 Site ParticleStore::site_at(const Vec3& x) const {
   Site site;
   for (std::size_t a = 0; a < 3; ++a) {
     const double counts = std::floor((box_.wrap(static_cast<int>(a), x[a]) - origin_[a]) / unit_[a]);
     const double last = (box_.periodic[a] ? period_counts : open_counts) - 1;
-    site.at[a] = static_cast<std::int32_t>(static_cast<std::uint32_t>(std::clamp(counts, 0.0, last)));
+    site.at[a] = as_signed(static_cast<std::uint32_t>(std::clamp(counts, 0.0, last)));
   }
   return site;
+}
+
+std::vector<std::int32_t> ParticleStore::places() const {
+  std::vector<std::int32_t> result;
+  result.reserve(size_);
+  for (std::size_t i = 0; i < sites_.size(); ++i)
+    if (sites_[i].mark != Site::empty) result.push_back(static_cast<std::int32_t>(i));
+  return result;
 }
 
 double ParticleStore::top() {
@@ -87,51 +138,71 @@ double ParticleStore::top() {
   return layers_in_use_ == 0 ? box_.lo[2] : origin_[2] + static_cast<double>(layers_in_use_) * cells_.edge[2];
 }
 
-const Found& ParticleStore::find(const Site& centre, double inner, double outer) {
-  find_within(cells_, centre.at, inner, outer, found_);
-  return found_;
+std::span<const std::int32_t> ParticleStore::find(const Site& centre, double radius) {
+  ball_.centre = centre;
+  ball_.radius = radius;
+  return std::span(found_).first(find_within(cells_, ball_, found_.data()));
 }
 
-void ParticleStore::move_alike(std::span<const std::int32_t> indices, const Site& displacement) {
-  renew(move_sites(sites_.data(), listed_at_.data(), indices.data(), indices.size(), &displacement, 0, limits_,
-                   renewed_.data()));
+// Whether particles that far from the centre may come to a wall or an exit.
+Passage ParticleStore::passage(const Site& centre, double radius, const Site& displacement) const {
+  bool limited = false;
+  for (std::size_t a = 0; a < 3; ++a) {
+    if (box_.periodic[a]) continue;
+    const double range =
+        radius / unit_[a] * (1 + slack_in_diameters) + std::abs(static_cast<double>(displacement.at[a]));
+    const double at = as_unsigned(centre.at[a]);
+    limited |= at - range <= std::max(limits_.lowest[a], limits_.exit[a]) || at + range >= limits_.highest[a];
+  }
+  return {radius, displacement, limited};
 }
 
-void ParticleStore::move_each(std::span<const std::int32_t> indices, std::span<const Site> displacements) {
-  renew(move_sites(sites_.data(), listed_at_.data(), indices.data(), indices.size(), displacements.data(), 1, limits_,
-                   renewed_.data()));
+Lists ParticleStore::output() {
+  return {away_.data(), 0, marked_.data(), 0};
 }
 
-void ParticleStore::take_out(std::int32_t i) {
-  take_from_cell(i);
-  if (lists_ == Lists::kept) forget_neighbours(i);
-  cell_of_[static_cast<std::size_t>(i)] = -1;
-  --size_;
+std::size_t ParticleStore::move_within(const Site& centre, double radius, const Site& displacement) {
+  Lists lists = output();
+  ball_.centre = centre;
+  ball_.radius = radius;
+  const Passage spot = passage(centre, radius, displacement);
+  const std::size_t moved = grainvdb::spot::move_within(cells_, ball_, spot, limits_, lists);
+  settle(std::span(away_).first(lists.away_count), limits_);
+  return moved;
+}
+
+std::size_t ParticleStore::move_and_mark(const Site& centre, const Radii& radii, const Site& displacement) {
+  Lists lists = output();
+  ball_.centre = centre;
+  ball_.radius = std::max(radii.moved, radii.marked);
+  const Passage spot = passage(centre, radii.moved, displacement);
+  const std::size_t moved = grainvdb::spot::move_and_mark(cells_, ball_, spot, limits_without_exit_, lists);
+  zone_.assign(marked_.begin(), marked_.begin() + static_cast<std::ptrdiff_t>(lists.zone_count));
+  settle(std::span(away_).first(lists.away_count), limits_without_exit_);
+  return moved;
+}
+
+void ParticleStore::move_zone(std::span<const Site> displacements) {
+  move_each(zone_, displacements);
+  zone_.clear();
+}
+
+void ParticleStore::move_each(std::span<const std::int32_t> places, std::span<const Site> displacements) {
+  const std::size_t count =
+      grainvdb::spot::move_each(sites_.data(), listed_at_.data(), places, displacements.data(), limits_, away_.data());
+  settle(std::span(away_).first(count), limits_);
+}
+
+std::vector<std::int64_t> ParticleStore::take_left() {
+  std::sort(left_.begin(), left_.end());
+  return std::exchange(left_, {});
 }
 
 void ParticleStore::compact() {
-  std::vector<std::int32_t> order;
-  order.reserve(size_);
-  for (std::size_t i = 0; i < id_.size(); ++i) {
-    if (cell_of_[i] < 0) continue;
-    cell_of_[i] = static_cast<std::int32_t>(cell_at(sites_[i]));
-    order.push_back(static_cast<std::int32_t>(i));
-  }
-  const auto key = [&](std::int32_t i) {
-    return std::pair(cell_of_[static_cast<std::size_t>(i)], id_[static_cast<std::size_t>(i)]);
-  };
-  std::sort(order.begin(), order.end(), [&](std::int32_t i, std::int32_t j) { return key(i) < key(j); });
-  std::vector<std::int64_t> id;
-  std::vector<Site> sites;
-  id.reserve(size_);
-  sites.reserve(size_);
-  for (const std::int32_t i : order) {
-    id.push_back(id_[static_cast<std::size_t>(i)]);
-    sites.push_back(sites_[static_cast<std::size_t>(i)]);
-  }
-  id_ = std::move(id);
-  sites_ = std::move(sites);
-  index_all();
+  std::vector<Mover> particles;
+  particles.reserve(size_);
+  for (const std::int32_t i : places()) particles.push_back({site(i), id(i)});
+  fill(std::move(particles));
 }
 
 std::size_t ParticleStore::cell_at(const Site& site) const {
@@ -143,127 +214,139 @@ std::size_t ParticleStore::cell_at(const Site& site) const {
   return cell;
 }
 
-void ParticleStore::make_cells() {
-  const std::size_t cells = static_cast<std::size_t>(cells_.cells[0]) * static_cast<std::size_t>(cells_.cells[1]) *
-                            static_cast<std::size_t>(cells_.cells[2]);
-  if (cells_.capacity == 0) cells_.capacity = 16;
-  members_.assign(cells * cells_.capacity, 0);
-  counts_.assign(cells, 0);
-  layer_counts_.assign(static_cast<std::size_t>(cells_.cells[2]), 0);
-  cells_.members = members_.data();
-  cells_.counts = counts_.data();
-}
-
-void ParticleStore::index_all() {
-  cell_of_.assign(size_, -1);
+void ParticleStore::fill(std::vector<Mover> particles) {
+  const auto key = [&](const Mover& p) { return std::tuple(cell_at(p.site), p.id); };
+  std::sort(particles.begin(), particles.end(), [&](const Mover& p, const Mover& q) { return key(p) < key(q); });
+  std::fill(rows_.begin(), rows_.end(), 0);
+  std::fill(layer_counts_.begin(), layer_counts_.end(), 0);
+  size_ = layers_in_use_ = 0;
+  sites_.clear();
+  resize_places();
+  near_.reset(neighbours_ == Neighbours::listed ? sites_.size() : 0);
+  for (const Mover& p : particles) put(p.site, p.id);
+  if (neighbours_ == Neighbours::none) return;
   listed_at_ = sites_;
-  cells_.sites = sites_.data();
-  for (Found* found : {&found_, &renewal_}) {
-    found->inner.resize(size_ + 8);
-    found->outer.resize(size_ + 8);
-    found->candidates.resize(size_ + 8 + cells_.capacity);
-  }
-  renewed_.resize(size_ + 1);
-  make_cells();
-  for (std::size_t i = 0; i < size_; ++i) put_into_cell(static_cast<std::int32_t>(i));
-  if (lists_ == Lists::none) return;
-  near_counts_.assign(size_, 0);
-  near_.resize(size_ * near_capacity_);
-  for (std::size_t i = 0; i < size_; ++i)
-    std::fill_n(near_.begin() + static_cast<std::ptrdiff_t>(i * near_capacity_), near_capacity_,
-                static_cast<std::int32_t>(i));
-  for (std::size_t i = 0; i < size_; ++i) {
-    find_within(cells_, sites_[i].at, diameter_ + skin_, diameter_ + skin_, renewal_);
-    for (std::size_t k = 0; k < renewal_.inner_count; ++k)
-      if (static_cast<std::size_t>(renewal_.inner[k]) < i) {
-        add_neighbour(static_cast<std::int32_t>(i), renewal_.inner[k]);
-        add_neighbour(renewal_.inner[k], static_cast<std::int32_t>(i));
-      }
-  }
+  cells_.listed_at = listed_at_.data();
+  for (const std::int32_t i : places())
+    for (const std::int32_t j : find(site(i), diameter_ + skin_))
+      if (j < i) near_.join(i, j);
 }
 
-void ParticleStore::put_into_cell(std::int32_t i) {
-  const std::size_t cell = cell_at(sites_[static_cast<std::size_t>(i)]);
-  if (static_cast<std::size_t>(counts_[cell]) == cells_.capacity) grow_cells();
-  members_[cell * cells_.capacity + static_cast<std::size_t>(counts_[cell]++)] = i;
-  cell_of_[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(cell);
+// Room for all places of all cells; those that are new are empty.
+void ParticleStore::resize_places() {
+  const std::size_t before = sites_.size(), after = rows_.size() * cells_.capacity;
+  sites_.resize(after);
+  id_.resize(after);
+  for (std::size_t i = before; i < after; ++i) {
+    sites_[i] = middles_[i / cells_.capacity];
+    sites_[i].mark = Site::empty;
+  }
+  if (neighbours_ == Neighbours::listed) {
+    listed_at_.resize(after);
+    std::copy(sites_.begin() + static_cast<std::ptrdiff_t>(before), sites_.end(),
+              listed_at_.begin() + static_cast<std::ptrdiff_t>(before));
+    cells_.listed_at = listed_at_.data();
+  }
+  cells_.sites = sites_.data();
+  for (std::vector<std::int32_t>* list : {&found_, &away_, &marked_}) list->resize(after + spare);
+}
+
+std::int32_t ParticleStore::put(const Site& site, std::int64_t id) {
+  const std::size_t cell = cell_at(site);
+  const std::int32_t place = free_place(cell);
+  sites_[index(place)] = site;
+  id_[index(place)] = id;
+  const std::size_t in_cell = index(place) % cells_.capacity;
+  rows_[cell] = std::max(rows_[cell], static_cast<std::int32_t>(in_cell / row_size + 1));
   const std::size_t layer = cell % layer_counts_.size();
   ++layer_counts_[layer];
   layers_in_use_ = std::max(layers_in_use_, layer + 1);
+  ++size_;
+  return place;
 }
 
-void ParticleStore::take_from_cell(std::int32_t i) {
-  const auto cell = static_cast<std::size_t>(cell_of_[static_cast<std::size_t>(i)]);
-  const auto first = members_.begin() + static_cast<std::ptrdiff_t>(cell * cells_.capacity);
-  const auto last = first + --counts_[cell];
-  *std::find(first, last, i) = *last;
-  --layer_counts_[cell % layer_counts_.size()];
+std::int32_t ParticleStore::free_place(std::size_t cell) {
+  const auto is_free = [](const Site& site) { return site.mark == Site::empty; };
+  const auto first = sites_.begin() + static_cast<std::ptrdiff_t>(cell * cells_.capacity);
+  const auto last = first + static_cast<std::ptrdiff_t>(cells_.capacity);
+  const auto free = std::find_if(first, last, is_free);
+  if (free != last) return static_cast<std::int32_t>(free - sites_.begin());
+  widen_cells();
+  return free_place(cell);
 }
 
-void ParticleStore::grow_cells() {
-  // No more than needed: searches copy cells in full.
-  const std::size_t old_capacity = cells_.capacity, capacity = old_capacity + 8;
-  std::vector<std::int32_t> members(counts_.size() * capacity, 0);
-  for (std::size_t cell = 0; cell < counts_.size(); ++cell)
-    std::copy_n(members_.begin() + static_cast<std::ptrdiff_t>(cell * old_capacity), counts_[cell],
-                members.begin() + static_cast<std::ptrdiff_t>(cell * capacity));
-  members_ = std::move(members);
-  cells_.members = members_.data();
-  cells_.capacity = capacity;
-  for (Found* found : {&found_, &renewal_}) found->candidates.resize(size_ + 8 + capacity);
+void ParticleStore::take_out(std::int32_t i) {
+  const std::size_t cell = index(i) / cells_.capacity, layer = cell % layer_counts_.size();
+  if (neighbours_ == Neighbours::listed) near_.forget(i);
+  Site& site = sites_[index(i)];
+  // Not away from the middle of the cell, nor from where it was listed.
+  site = middles_[cell];
+  site.mark = Site::empty;
+  if (neighbours_ == Neighbours::listed) listed_at_[index(i)] = site;
+  --layer_counts_[layer];
+  --size_;
+  const auto is_free = [](const Site& s) { return s.mark == Site::empty; };
+  const auto row_is_free = [&](std::int32_t row) {
+    const auto first = sites_.begin() + static_cast<std::ptrdiff_t>(cell * cells_.capacity + index(row) * row_size);
+    return std::all_of(first, first + row_size, is_free);
+  };
+  while (rows_[cell] > 0 && row_is_free(rows_[cell] - 1)) --rows_[cell];
 }
 
-// Those that move_sites wrote down.
-void ParticleStore::renew(std::size_t count) {
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::int32_t i = renewed_[k];
-    take_from_cell(i);
-    put_into_cell(i);
-    listed_at_[static_cast<std::size_t>(i)] = sites_[static_cast<std::size_t>(i)];
+// Every cell gets another row. What is kept by place follows.
+void ParticleStore::widen_cells() {
+  const std::size_t before = cells_.capacity, after = before + row_size;
+  const std::vector<Site> sites = std::exchange(sites_, {}), listed_at = listed_at_;
+  const std::vector<std::int64_t> ids = id_;
+  cells_.capacity = after;
+  resize_places();
+  const auto widened = [&](std::size_t i) { return i / before * after + i % before; };
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    sites_[widened(i)] = sites[i];
+    id_[widened(i)] = ids[i];
   }
-  if (lists_ == Lists::kept)
-    for (std::size_t k = 0; k < count; ++k) renew_lists(renewed_[k]);
+  for (std::size_t i = 0; i < listed_at.size(); ++i) listed_at_[widened(i)] = listed_at[i];
+  if (neighbours_ == Neighbours::listed) near_.widen_cells(before, after);
+  for (std::vector<std::int32_t>* list : {&zone_, &renewed_})
+    for (std::int32_t& i : *list) i = static_cast<std::int32_t>(widened(index(i)));
+  for (Mover& m : movers_) m.from = static_cast<std::int32_t>(widened(index(m.from)));
 }
 
-void ParticleStore::renew_lists(std::int32_t i) {
-  forget_neighbours(i);
-  find_within(cells_, sites_[static_cast<std::size_t>(i)].at, diameter_ + skin_, diameter_ + skin_, renewal_);
-  for (std::size_t k = 0; k < renewal_.inner_count; ++k) {
-    const std::int32_t j = renewal_.inner[k];
-    if (j == i) continue;
-    add_neighbour(i, j);
-    add_neighbour(j, i);
+// Those that a kernel wrote down leave, change their cells, and get new lists.
+void ParticleStore::settle(std::span<const std::int32_t> away, const MoveLimits& limits) {
+  if (away.empty()) return;
+  movers_.clear();
+  renewed_.clear();
+  for (const std::int32_t i : away) {
+    if (site(i).at[2] < limits.exit[2]) {
+      left_.push_back(id(i));
+      take_out(i);
+    } else if (cell_at(site(i)) == index(i) / cells_.capacity) {
+      renewed_.push_back(i);
+    } else {
+      movers_.push_back({site(i), id(i), i});
+      take_out(i);
+    }
+  }
+  change_cells();
+  if (neighbours_ == Neighbours::none) return;
+  for (const std::int32_t i : renewed_) listed_at_[index(i)] = site(i);
+  for (const std::int32_t i : renewed_) list_neighbours(i);
+}
+
+void ParticleStore::change_cells() {
+  for (const Mover& m : movers_) {
+    const auto in_zone = m.site.mark == Site::in_zone ? std::find(zone_.begin(), zone_.end(), m.from) : zone_.end();
+    const std::int32_t to = put(m.site, m.id);
+    if (in_zone != zone_.end()) *in_zone = to;
+    renewed_.push_back(to);
   }
 }
 
-void ParticleStore::forget_neighbours(std::int32_t i) {
-  const auto row = [&](std::int32_t k) { return near_.data() + static_cast<std::size_t>(k) * near_capacity_; };
-  for (std::int32_t k = 0; k < near_counts_[static_cast<std::size_t>(i)]; ++k) {
-    const std::int32_t j = row(i)[k];
-    std::int32_t* last = row(j) + --near_counts_[static_cast<std::size_t>(j)];
-    *std::find(row(j), last, i) = *last;
-    *last = j;
-    row(i)[k] = i;
-  }
-  near_counts_[static_cast<std::size_t>(i)] = 0;
-}
-
-void ParticleStore::add_neighbour(std::int32_t i, std::int32_t j) {
-  std::int32_t& count = near_counts_[static_cast<std::size_t>(i)];
-  if (static_cast<std::size_t>(count) == near_capacity_) grow_lists();
-  near_[static_cast<std::size_t>(i) * near_capacity_ + static_cast<std::size_t>(count++)] = j;
-}
-
-void ParticleStore::grow_lists() {
-  const std::size_t capacity = near_capacity_ + 8;
-  std::vector<std::int32_t> near(near_counts_.size() * capacity);
-  for (std::size_t i = 0; i < near_counts_.size(); ++i) {
-    const auto from = near_.begin() + static_cast<std::ptrdiff_t>(i * near_capacity_);
-    const auto to = near.begin() + static_cast<std::ptrdiff_t>(i * capacity);
-    std::fill_n(std::copy_n(from, near_capacity_, to), 8, static_cast<std::int32_t>(i));
-  }
-  near_ = std::move(near);
-  near_capacity_ = capacity;
+void ParticleStore::list_neighbours(std::int32_t i) {
+  near_.forget(i);
+  for (const std::int32_t j : find(site(i), diameter_ + skin_))
+    if (j != i) near_.join(i, j);
 }
 
 }  // namespace grainvdb::spot

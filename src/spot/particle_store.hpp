@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "grainvdb/box.hpp"
+#include "spot/near_lists.hpp"
 #include "spot/zone_kernels.hpp"
 
 namespace grainvdb::spot {
@@ -18,24 +20,45 @@ struct Packing {
   std::vector<Vec3> position;    ///< [length]
 };
 
-/// A particle keeps its cell and its list of neighbours until it has moved by a share of the lists' skin; then both are
-/// renewed. A search near a point and a relaxation cost the same in a packing of any size.
+/// The lower end of a box that is not periodic along z.
+struct Floor {
+  double sinking = 0;  ///< how far centres may get below it, at most 1.8 diameters [length]
+  double exit = std::numeric_limits<double>::infinity();  ///< how far below it a particle has left [length]
+};
+
+/// Of a spot that moves particles, and of the zone that is relaxed around it [length].
+struct Radii {
+  double moved = 0, marked = 0;
+};
+
+/// Particles lie in memory by cells, so that a sweep over those near a point reads memory in order; each has a place,
+/// which it leaves only for another cell. Its cell and its list of neighbours are renewed when it has moved by a share
+/// of the lists' skin; without lists, when it has left the cell. A sweep and a relaxation cost the same in a packing of
+/// any size.
 ///
 /// Lists are mutual and hold every pair nearer than diameter + skin when the later of its two lists was made. Each then
 /// moves by at most skin/3 from where its own list was made, so that the pair comes nearer by at most skin.
 class ParticleStore {
  public:
-  enum class Lists { none, kept };
+  enum class Neighbours { none, listed };
+  /// Per axis [counts].
+  struct Bounds {
+    std::array<std::int32_t, 3> lowest{}, highest{};
+    bool hold(const Site& site) const {
+      bool inside = true;
+      for (std::size_t a = 0; a < 3; ++a) inside &= site.at[a] > lowest[a] && site.at[a] < highest[a];
+      return inside;
+    }
+  };
 
-  /// Centres beyond a wall are put on it; `below_floor` is how far they may sink below the lower end of a box that is
-  /// not periodic along z, at most 1.8 diameters. Periodic lengths must be at least four diameters; the caller checks
-  /// that. Memory: 130 bytes per particle, 230 with lists, and about 90 bytes per (2 diameters)³ of the box.
-  ParticleStore(const Box& box, const Packing& packing, Lists lists, double below_floor = 0);
+  /// Centres beyond a wall are put on it. Periodic lengths must be at least four diameters; the caller checks that.
+  /// Memory: about 45 bytes per particle, 130 with lists.
+  ParticleStore(const Box& box, const Packing& packing, Neighbours neighbours, const Floor& floor = {});
 
-  /// Slots, those of particles that were taken out included.
-  std::size_t slots() const { return id_.size(); }
+  /// Places, most of which hold a particle.
+  std::size_t slots() const { return sites_.size(); }
   std::size_t size() const { return size_; }
-  bool holds(std::int32_t i) const { return cell_of_[static_cast<std::size_t>(i)] >= 0; }
+  bool holds(std::int32_t i) const { return site(i).mark != Site::empty; }
   double diameter() const { return diameter_; }
   const Box& box() const { return box_; }
   std::int64_t id(std::int32_t i) const { return id_[static_cast<std::size_t>(i)]; }
@@ -44,59 +67,77 @@ class ParticleStore {
   const Vec3& unit() const { return unit_; }
   Vec3 position(std::int32_t i) const { return position_of(site(i)); }
   Vec3 position_of(const Site& site) const;
+  /// Between which places nothing is near a wall: farther than that from the ends of axes that are not periodic.
+  Bounds bounds(double distance) const;
   Site site_at(const Vec3& x) const;
+  /// The places that hold particles.
+  std::vector<std::int32_t> places() const;
   /// Upper end of the highest layer of cells that holds a particle; the lower end of the box when there is none.
   double top();
 
-  /// The particles within two radii of a point, see find_within. Valid until the next call.
-  const Found& find(const Site& centre, double inner, double outer);
-  /// Prepares the caches for a search around a point that comes soon.
-  void fetch(const Site& centre, double radius) const { fetch_within(cells_, centre.at, radius); }
+  /// The places of the particles within a ball. Valid until the next call.
+  std::span<const std::int32_t> find(const Site& centre, double radius);
   /// Who may touch whom; empty without lists.
-  NearView near() const { return {near_.data(), near_counts_.data(), near_capacity_}; }
+  NearView near() const { return near_.view(); }
 
-  void set_stamp(std::int32_t i, std::int32_t stamp) { sites_[static_cast<std::size_t>(i)].stamp = stamp; }
-  /// Moves the listed particles by the same whole counts, or each by its own; beyond a wall they stay on the wall. The
-  /// stamps of displacements must be 0.
-  void move_alike(std::span<const std::int32_t> indices, const Site& displacement);
-  void move_each(std::span<const std::int32_t> indices, std::span<const Site> displacements);
-  /// Takes a particle out. Its slot stays until `compact`.
+  /// Moves the particles within a radius by the same whole counts, and returns how many there are. Beyond a wall they
+  /// stay on the wall; those beyond the exit leave.
+  std::size_t move_within(const Site& centre, double radius, const Site& displacement);
+  /// The same, but all that were within the larger radius before are marked: they are the zone. Nothing leaves. Only
+  /// with lists.
+  std::size_t move_and_mark(const Site& centre, const Radii& radii, const Site& displacement);
+  /// The places of the marked particles; valid until the next call that moves some.
+  std::span<const std::int32_t> zone() const { return zone_; }
+  /// Moves each particle of the zone by its own counts, and ends the zone. Those beyond the exit leave.
+  void move_zone(std::span<const Site> displacements);
+  /// The same for any particles. Only with lists.
+  void move_each(std::span<const std::int32_t> places, std::span<const Site> displacements);
+  /// Takes a particle out.
   void take_out(std::int32_t i);
-  /// Forgets the slots of those that were taken out, and puts particles that are near each other in space near each
-  /// other in memory. All indices change.
+  /// The ids of those that have left since the last call, sorted.
+  std::vector<std::int64_t> take_left();
+  /// Fills gaps between particles in memory. Places change.
   void compact();
 
  private:
-  void set_scales(double below_floor);
+  struct Mover {
+    Site site;
+    std::int64_t id = 0;
+    std::int32_t from = 0;
+  };
+
+  void set_scales(const Floor& floor);
   void make_cells();
+  Passage passage(const Site& centre, double radius, const Site& displacement) const;
   std::size_t cell_at(const Site& site) const;
-  void index_all();
-  void put_into_cell(std::int32_t i);
-  void take_from_cell(std::int32_t i);
-  void grow_cells();
-  void renew(std::size_t count);
-  void renew_lists(std::int32_t i);
-  void forget_neighbours(std::int32_t i);
-  void add_neighbour(std::int32_t i, std::int32_t j);
-  void grow_lists();
+  Lists output();
+  void fill(std::vector<Mover> particles);
+  void resize_places();
+  std::int32_t put(const Site& site, std::int64_t id);
+  std::int32_t free_place(std::size_t cell);
+  void widen_cells();
+  void settle(std::span<const std::int32_t> away, const MoveLimits& limits);
+  void change_cells();
+  void list_neighbours(std::int32_t i);
 
   Box box_;
   double diameter_;
-  Lists lists_;
+  Neighbours neighbours_;
   double skin_ = 0;
   Vec3 origin_{}, unit_{};
-  MoveLimits limits_;
+  MoveLimits limits_, limits_without_exit_;
   CellView cells_;
   std::size_t size_ = 0;
   std::vector<std::int64_t> id_;
   std::vector<Site> sites_, listed_at_;
-  std::vector<std::int32_t> cell_of_;  ///< -1: taken out
-  std::vector<std::int32_t> members_, counts_, layer_counts_;
+  std::vector<std::int32_t> rows_, layer_counts_;
+  std::vector<Site> middles_;
   std::size_t layers_in_use_ = 0;  ///< layers of cells above these hold nothing
-  std::size_t near_capacity_ = 16;
-  std::vector<std::int32_t> near_, near_counts_;
-  Found found_, renewal_;
-  std::vector<std::int32_t> renewed_;
+  NearLists near_;
+  Ball ball_;
+  std::vector<std::int32_t> found_, away_, marked_, zone_, renewed_;
+  std::vector<Mover> movers_;
+  std::vector<std::int64_t> left_;
 };
 
 }  // namespace grainvdb::spot

@@ -38,16 +38,15 @@ Packing poisson_packing(const Box& box, double phi, double diameter, std::uint64
 Packing random_packing(const Box& box, double phi, double diameter, std::uint64_t seed) {
   Packing packing = poisson_packing(box, phi, diameter, seed);
   const std::size_t n = packing.id.size();
-  ParticleStore store(box, packing, ParticleStore::Lists::kept);
+  ParticleStore store(box, packing, ParticleStore::Neighbours::listed);
   const Container container{box, std::nullopt};
-  std::vector<std::int32_t> all(n);
-  std::iota(all.begin(), all.end(), 0);
+  std::vector<std::int32_t> all = store.places();
   std::vector<Site> pushes(n);
   PushLaw law{{}, static_cast<float>(diameter), 0.8F, 0};
   for (std::size_t a = 0; a < 3; ++a) law.unit[a] = static_cast<float>(store.unit()[a]);
   double worst = 0;  // the largest push in a pass, which is near the largest overlap
   for (int pass = 0; pass < most_passes; ++pass) {
-    push_apart(store.sites(), store.near(), all.data(), n, law, pushes.data());
+    push_apart(store.sites(), store.near(), all, law, pushes.data());
     worst = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3 wall = push_from_walls(container, store.position(all[i]), diameter);
@@ -58,6 +57,7 @@ Packing random_packing(const Box& box, double phi, double diameter, std::uint64_
     }
     if (worst < tolerated_overlap * diameter / 8) break;
     store.move_each(all, pushes);
+    all = store.places();
   }
   if (!(worst < tolerated_overlap * diameter / 8))
     throw LimitError({{},

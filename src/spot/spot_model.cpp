@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include <hwy/cache_control.h>
+
 namespace grainvdb::spot {
 namespace {
 
@@ -12,12 +14,13 @@ namespace {
 constexpr double sinking_in_diameters = 1.8;
 constexpr double exit_in_diameters = 0.5;
 
-ParticleStore::Lists lists_for(const Relaxation& relaxation) {
-  return relaxation.every > 0 && relaxation.probability > 0 ? ParticleStore::Lists::kept : ParticleStore::Lists::none;
+using Neighbours = ParticleStore::Neighbours;
+Neighbours neighbours_for(const Relaxation& relaxation) {
+  return relaxation.every > 0 && relaxation.probability > 0 ? Neighbours::listed : Neighbours::none;
 }
 
-double sinking(const Container& container, double diameter) {
-  return container.orifice ? sinking_in_diameters * diameter : 0;
+Floor floor_of(const Container& container, double diameter) {
+  return container.orifice ? Floor{sinking_in_diameters * diameter, exit_in_diameters * diameter} : Floor{};
 }
 
 }  // namespace
@@ -26,11 +29,12 @@ SpotModel::SpotModel(const Container& container, const Packing& packing, const S
                      std::uint64_t seed)
     : container_(container),
       parameters_(parameters),
-      particles_(container.box, packing, lists_for(parameters.relaxation), sinking(container, packing.diameter)),
+      particles_(container.box, packing, neighbours_for(parameters.relaxation), floor_of(container, packing.diameter)),
       random_(seed) {
   for (std::size_t a = 0; a < 3; ++a) law_.unit[a] = static_cast<float>(particles_.unit()[a]);
   law_.diameter = static_cast<float>(packing.diameter);
   law_.strength = static_cast<float>(parameters.relaxation.strength);
+  law_.mark = Site::in_zone;
   const Box& box = container.box;
   for (std::size_t k = 0; k < parameters.count; ++k) {
     const double x = random_.uniform(box.lo[0], box.hi[0]), y = random_.uniform(box.lo[1], box.hi[1]);
@@ -47,7 +51,9 @@ SpotModel::Event SpotModel::draw_event() {
   if (choice < 0 || spots_.empty()) return event;
   const std::size_t k = std::min(static_cast<std::size_t>(choice / parameters_.hop_rate), spots_.size() - 1);
   event.spot = k;
-  if (!parameters_.bias) event.step = kept_inside(spots_[k], draw_step());
+  if (!parameters_.bias) event.step = draw_step();
+  // It is one of many and will be needed in a moment.
+  hwy::Prefetch(&spots_[k]);
   return event;
 }
 
@@ -122,9 +128,8 @@ std::optional<Vec3> SpotModel::biased_step(const Vec3& spot) {
     candidates[k] = kept_inside(spot, step);
     Vec3 end = spot;
     for (std::size_t a = 0; a < 3; ++a) end[a] += candidates[k][a];
-    const Found& found = particles_.find(particles_.site_at(end), parameters_.radius, parameters_.radius);
-    weights[k] =
-        found.inner_count == 0 ? 0 : std::pow(static_cast<double>(found.inner_count), parameters_.bias->exponent);
+    const std::size_t near = particles_.find(particles_.site_at(end), parameters_.radius).size();
+    weights[k] = near == 0 ? 0 : std::pow(static_cast<double>(near), parameters_.bias->exponent);
     sum += weights[k];
   }
   if (sum == 0) return std::nullopt;
@@ -146,25 +151,17 @@ void SpotModel::step_spot(std::size_t k, const Vec3& drawn) {
   // Grains that hang in the orifice when all others have gone still meet spots.
   const double top = std::max(particles_.top(), container_.box.lo[2] + particles_.diameter());
   if (!container_.box.periodic[2] && spot[2] >= top) return remove_spot(k);
-  const std::optional<Vec3> step = parameters_.bias ? biased_step(spot) : drawn;
+  const std::optional<Vec3> step = parameters_.bias ? biased_step(spot) : kept_inside(spot, drawn);
   if (!step) return remove_spot(k);
-  Vec3 centre{};
-  for (int a = 0; a < 3; ++a) {
-    centre[a] = spot[a] + 0.5 * (*step)[a];
-    spot[a] = container_.box.wrap(a, spot[a] + (*step)[a]);
-  }
+  const Vec3 centre = middle_of(spot, *step);
+  for (int a = 0; a < 3; ++a) spot[a] = container_.box.wrap(a, spot[a] + (*step)[a]);
   ++counters_.steps;
-  // Particles move now; what the event after this one will look at is fetched meanwhile.
   next_ = draw_event();
-  prepare(next_);
   displace(centre, *step);
 }
 
-void SpotModel::prepare(const Event& event) const {
-  if (!event.spot) return;
-  Vec3 centre = spots_[*event.spot];
-  for (std::size_t a = 0; a < 3; ++a) centre[a] += 0.5 * event.step[a];
-  particles_.fetch(particles_.site_at(centre), parameters_.radius);
+Vec3 SpotModel::middle_of(const Vec3& spot, const Vec3& step) {
+  return {spot[0] + 0.5 * step[0], spot[1] + 0.5 * step[1], spot[2] + 0.5 * step[2]};
 }
 
 // A displacement in counts. What is lost by rounding is made up for in later ones.
@@ -185,36 +182,33 @@ bool SpotModel::is_relaxed() {
   return relaxation.probability >= 1 || random_.uniform() < relaxation.probability;
 }
 
+double SpotModel::influence_at(const Site& centre) {
+  if (!parameters_.bias) return parameters_.influence;
+  const auto near = static_cast<double>(particles_.find(centre, parameters_.radius).size());
+  return std::max(near, parameters_.bias->fewest) / parameters_.bias->volume;
+}
+
 void SpotModel::displace(const Vec3& centre, const Vec3& step) {
   const bool relaxed = is_relaxed();
-  const double reach = relaxed ? parameters_.relaxation.radius : parameters_.radius;
-  const Found& found = particles_.find(particles_.site_at(centre), parameters_.radius, reach);
-  counters_.displaced += found.inner_count;
-  double influence = parameters_.influence;
-  if (parameters_.bias)
-    influence = std::max(static_cast<double>(found.inner_count), parameters_.bias->fewest) / parameters_.bias->volume;
+  const Site site = particles_.site_at(centre);
+  const double influence = influence_at(site);
   const Site displacement = rounded({-step[0] / influence, -step[1] / influence, -step[2] / influence});
-  const auto inner = std::span(found.inner).first(found.inner_count);
-  const auto outer = std::span(found.outer).first(found.outer_count);
-  zone_.assign(inner.begin(), inner.end());
-  zone_.insert(zone_.end(), outer.begin(), outer.end());
-  particles_.move_alike(inner, displacement);
-  if (relaxed) relax(centre);
-  drain(centre);
+  if (relaxed) {
+    const Radii radii{parameters_.radius, parameters_.relaxation.radius};
+    counters_.displaced += particles_.move_and_mark(site, radii, displacement);
+    relax(centre);
+  } else {
+    counters_.displaced += particles_.move_within(site, parameters_.radius, displacement);
+  }
+  for (const std::int64_t id : particles_.take_left()) drained_.push_back({id, time_});
 }
 
 void SpotModel::relax(const Vec3& centre) {
   ++counters_.relaxed;
-  if (law_.stamp == std::numeric_limits<std::int32_t>::max()) {
-    for (std::size_t i = 0; i < particles_.slots(); ++i) particles_.set_stamp(static_cast<std::int32_t>(i), 0);
-    law_.stamp = 0;
-  }
-  ++law_.stamp;
-  for (const std::int32_t i : zone_) particles_.set_stamp(i, law_.stamp);
-  pushes_.resize(zone_.size());
-  push_apart(particles_.sites(), particles_.near(), zone_.data(), zone_.size(), law_, pushes_.data());
+  pushes_.resize(particles_.zone().size());
+  push_apart(particles_.sites(), particles_.near(), particles_.zone(), law_, pushes_.data());
   push_off_walls(centre);
-  particles_.move_each(zone_, pushes_);
+  particles_.move_zone(pushes_);
 }
 
 void SpotModel::push_off_walls(const Vec3& centre) {
@@ -224,21 +218,13 @@ void SpotModel::push_off_walls(const Vec3& centre) {
   for (int a = 0; a < 3; ++a)
     near_wall |= !box.periodic[a] && (centre[a] - reach < box.lo[a] || (a < 2 && centre[a] + reach > box.hi[a]));
   if (!near_wall) return;
-  for (std::size_t k = 0; k < zone_.size(); ++k) {
-    const Vec3 push = push_from_walls(container_, particles_.position(zone_[k]), particles_.diameter());
+  const ParticleStore::Bounds inside = particles_.bounds(0.5 * particles_.diameter());
+  for (std::size_t k = 0; k < pushes_.size(); ++k) {
+    const std::int32_t i = particles_.zone()[k];
+    if (inside.hold(particles_.site(i))) continue;
+    const Vec3 push = push_from_walls(container_, particles_.position(i), particles_.diameter());
     for (std::size_t a = 0; a < 3; ++a)
       pushes_[k].at[a] += static_cast<std::int32_t>(std::nearbyint(push[a] / particles_.unit()[a]));
-  }
-}
-
-void SpotModel::drain(const Vec3& centre) {
-  if (!container_.orifice) return;
-  const double exit = container_.box.lo[2] - exit_in_diameters * particles_.diameter();
-  if (centre[2] - std::max(parameters_.radius, parameters_.relaxation.radius) > exit) return;
-  for (const std::int32_t i : zone_) {
-    if (particles_.position(i)[2] >= exit) continue;
-    drained_.push_back({particles_.id(i), time_});
-    particles_.take_out(i);
   }
 }
 

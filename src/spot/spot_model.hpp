@@ -89,14 +89,15 @@ class SpotModel {
   struct Event {
     double time = 0;
     std::optional<std::size_t> spot;  ///< that steps; none: one enters
-    Vec3 step{};                      ///< not known yet with a bias
+    Vec3 step{};                      ///< before walls cut it; not known yet with a bias
   };
   Event draw_event();
   void next_event();
   void insert_spot();
   void step_spot(std::size_t k, const Vec3& drawn);
   void remove_spot(std::size_t k);
-  void prepare(const Event& event) const;
+  static Vec3 middle_of(const Vec3& spot, const Vec3& step);
+  double influence_at(const Site& centre);
   Vec3 draw_step();
   Vec3 kept_inside(const Vec3& spot, Vec3 step) const;
   std::optional<Vec3> biased_step(const Vec3& spot);
@@ -105,7 +106,6 @@ class SpotModel {
   bool is_relaxed();
   void relax(const Vec3& centre);
   void push_off_walls(const Vec3& centre);
-  void drain(const Vec3& centre);
 
   Container container_;
   SpotParameters parameters_;
@@ -118,7 +118,6 @@ class SpotModel {
   SpotCounters counters_;
   PushLaw law_;
   Vec3 rest_{};  ///< what rounding has left over from displacements [counts]
-  std::vector<std::int32_t> zone_;
   std::vector<Site> pushes_;
 };
 

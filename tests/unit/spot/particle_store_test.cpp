@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -26,21 +26,24 @@ void expect_complete_lists(const ParticleStore& store) {
   const auto n = static_cast<std::int32_t>(store.slots());
   for (std::int32_t i = 0; i < n; ++i) {
     if (!store.holds(i)) continue;
-    const auto row = near.members + static_cast<std::size_t>(i) * near.capacity;
-    const std::set<std::int32_t> listed(row, row + near.counts[i]);
+    std::set<std::int32_t> listed;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(near.counts[i]); ++k)
+      listed.insert(near.at(static_cast<std::size_t>(i), k));
+    EXPECT_EQ(listed.size(), static_cast<std::size_t>(near.counts[i]));
     EXPECT_FALSE(listed.contains(i));
     for (std::int32_t j = 0; j < n; ++j)
       if (j != i && store.holds(j) && distance(store, i, j) < store.diameter()) {
         EXPECT_TRUE(listed.contains(j)) << i << ' ' << j;
       }
     for (const std::int32_t j : listed) EXPECT_TRUE(store.holds(j));
-    for (std::size_t k = static_cast<std::size_t>(near.counts[i]); k % 8 != 0; ++k) EXPECT_EQ(row[k], i);
+    for (std::size_t k = static_cast<std::size_t>(near.counts[i]); k % NearView::group != 0; ++k)
+      EXPECT_EQ(near.at(static_cast<std::size_t>(i), k), i);
   }
 }
 
 TEST(ParticleStore, ListsStayCompleteWhileParticlesMoveAndGo) {
   const Box box{{0, 0, 0}, {8, 7, 9}, {true, false, false}};
-  ParticleStore store(box, poisson_packing(box, 0.5, 1, 1), ParticleStore::Lists::kept);
+  ParticleStore store(box, poisson_packing(box, 0.5, 1, 1), ParticleStore::Neighbours::listed);
   testing::Random random(2);
   for (int round = 0; round < 40; ++round) {
     std::vector<std::int32_t> some;
@@ -54,57 +57,138 @@ TEST(ParticleStore, ListsStayCompleteWhileParticlesMoveAndGo) {
       steps.push_back(step);
     }
     store.move_each(some, steps);
-    store.take_out(some[some.size() / 2]);
+    store.take_out(store.places()[some.size() / 2]);
     if (round % 10 == 9) expect_complete_lists(store);
     if (round == 24) store.compact();
   }
 }
 
-TEST(ParticleStore, FindsParticlesThatHaveMovedSinceTheirCellWasChosen) {
+// The zone is marked while the lists of those that a spot has moved are renewed.
+TEST(ParticleStore, ListsStayCompleteWhileSpotsPass) {
+  const Box box{{0, 0, 0}, {9, 8, 10}, {true, false, false}};
+  ParticleStore store(box, poisson_packing(box, 0.55, 1, 6), ParticleStore::Neighbours::listed);
+  testing::Random random(7);
+  for (int round = 0; round < 400; ++round) {
+    Site step;
+    for (std::size_t a = 0; a < 3; ++a)
+      step.at[a] = static_cast<std::int32_t>(random.uniform(-0.03, 0.03) / store.unit()[a]);
+    const Site centre = store.site_at({random.uniform(0, 9), random.uniform(0, 8), random.uniform(0, 10)});
+    store.move_and_mark(centre, {2, 3}, step);
+    if (round % 40 == 39) expect_complete_lists(store);
+    for (const std::int32_t i : store.zone()) EXPECT_EQ(store.site(i).mark, Site::in_zone);
+    store.move_zone(std::vector<Site>(store.zone().size()));
+    for (const std::int32_t i : store.places()) EXPECT_EQ(store.site(i).mark, 0);
+  }
+}
+
+// Where particles are by their ids, kept beside the store in the plainest way.
+using Places = std::map<std::int64_t, Site>;
+Places places_of(const ParticleStore& store) {
+  Places places;
+  for (const std::int32_t i : store.places()) places[store.id(i)] = store.site(i);
+  return places;
+}
+
+std::size_t count_within(const ParticleStore& store, const Site& centre, double radius) {
+  std::size_t count = 0;
+  for (const std::int32_t i : store.places()) {
+    double r2 = 0;
+    for (int a = 0; a < 3; ++a)
+      r2 += std::pow(store.box().minimum_image(a, store.position(i)[a] - store.position_of(centre)[a]), 2);
+    count += r2 < radius * radius ? 1U : 0U;
+  }
+  return count;
+}
+
+TEST(ParticleStore, FindsParticlesThatHaveLeftTheirFirstCell) {
   const Box box{{0, 0, 0}, {8, 8, 8}, {true, true, false}};
-  ParticleStore store(box, poisson_packing(box, 0.5, 1, 3), ParticleStore::Lists::none);
-  std::vector<std::int32_t> all(store.slots());
-  std::iota(all.begin(), all.end(), 0);
-  testing::Random random(4);
-  Site step;
-  for (std::size_t a = 0; a < 3; ++a) step.at[a] = static_cast<std::int32_t>(0.011 / store.unit()[a]);
-  for (int round = 0; round < 60; ++round) {
-    store.move_alike(all, step);
-    const Site centre = store.site_at({random.uniform(0, 8), random.uniform(0, 8), random.uniform(0, 8)});
-    const Found& found = store.find(centre, 2, 2);
-    std::size_t expected = 0;
-    for (const std::int32_t i : all) {
-      double r2 = 0;
-      for (int a = 0; a < 3; ++a)
-        r2 += std::pow(box.minimum_image(a, store.position(i)[a] - store.position_of(centre)[a]), 2);
-      expected += r2 < 4 ? 1U : 0U;
+  for (const auto neighbours : {ParticleStore::Neighbours::none, ParticleStore::Neighbours::listed}) {
+    ParticleStore store(box, poisson_packing(box, 0.5, 1, 3), neighbours);
+    testing::Random random(4);
+    Site step;
+    for (std::size_t a = 0; a < 3; ++a) step.at[a] = static_cast<std::int32_t>(0.11 / store.unit()[a]);
+    const Site middle = store.site_at({4, 4, 4});
+    for (int round = 0; round < 60; ++round) {
+      const Places before = places_of(store);
+      const std::size_t expected = count_within(store, middle, 4);
+      EXPECT_EQ(store.move_within(middle, 4, step), expected);
+      std::size_t moved = 0;
+      for (const auto& [id, site] : places_of(store)) moved += site.at != before.at(id).at ? 1U : 0U;
+      EXPECT_EQ(moved, expected);
+      const Site centre = store.site_at({random.uniform(0, 8), random.uniform(0, 8), random.uniform(0, 8)});
+      EXPECT_EQ(store.find(centre, 2).size(), count_within(store, centre, 2));
     }
-    EXPECT_EQ(found.inner_count, expected);
+  }
+}
+
+// Two hundred particles come into one cell, which has sixteen places at first.
+TEST(ParticleStore, CellsHoldAnyNumberOfParticles) {
+  const Box box{{0, 0, 0}, {8, 8, 8}, {false, false, false}};
+  const Packing packing = poisson_packing(box, 0.2, 1, 8);
+  for (const auto neighbours : {ParticleStore::Neighbours::none, ParticleStore::Neighbours::listed}) {
+    ParticleStore store(box, packing, neighbours);
+    Site step;
+    for (std::size_t a = 0; a < 3; ++a) step.at[a] = -static_cast<std::int32_t>(0.5 / store.unit()[a]);
+    for (int k = 0; k < 17; ++k) store.move_within(store.site_at({4, 4, 4}), 8, step);
+    EXPECT_EQ(store.size(), packing.id.size());
+    EXPECT_EQ(store.find(store.site_at({0, 0, 0}), 0.01).size(), packing.id.size());
+    std::set<std::int64_t> ids;
+    for (const std::int32_t i : store.places()) ids.insert(store.id(i));
+    EXPECT_EQ(ids.size(), packing.id.size());
+    if (neighbours == ParticleStore::Neighbours::listed) {
+      expect_complete_lists(store);
+    }
   }
 }
 
 TEST(ParticleStore, KeepsCentresBetweenWallsAndIdsThroughCompaction) {
   const Box box{{0, 0, 0}, {8, 8, 8}, {false, true, false}};
   const Packing packing = poisson_packing(box, 0.2, 1, 5);
-  ParticleStore store(box, packing, ParticleStore::Lists::none, 1);
-  std::vector<std::int32_t> all(store.slots());
-  std::iota(all.begin(), all.end(), 0);
+  ParticleStore store(box, packing, ParticleStore::Neighbours::listed, {1, 3});
   Site step;
   for (std::size_t a = 0; a < 3; ++a) step.at[a] = -static_cast<std::int32_t>(0.5 / store.unit()[a]);
-  for (int k = 0; k < 20; ++k) store.move_alike(all, step);
-  for (const std::int32_t i : all) {
+  for (int k = 0; k < 20; ++k) store.move_each(store.places(), std::vector<Site>(store.size(), step));
+  EXPECT_EQ(store.size(), packing.id.size());
+  for (const std::int32_t i : store.places()) {
     EXPECT_NEAR(store.position(i)[0], 0, 1e-7);
     EXPECT_NEAR(store.position(i)[2], -1, 1e-7);
     EXPECT_GE(store.position(i)[1], 0);
     EXPECT_LT(store.position(i)[1], 8);
   }
-  store.take_out(3);
-  const std::int64_t gone = store.id(3);
+  const std::int32_t one = store.places()[3];
+  const std::int64_t gone = store.id(one);
+  store.take_out(one);
   store.compact();
   std::set<std::int64_t> ids;
-  for (std::size_t i = 0; i < store.slots(); ++i) ids.insert(store.id(static_cast<std::int32_t>(i)));
+  for (const std::int32_t i : store.places()) ids.insert(store.id(i));
   EXPECT_EQ(ids.size(), packing.id.size() - 1);
   EXPECT_FALSE(ids.contains(gone));
+}
+
+TEST(ParticleStore, ParticlesLeaveBelowTheExit) {
+  const Box box{{0, 0, 0}, {8, 8, 8}, {true, true, false}};
+  const Packing packing = poisson_packing(box, 0.5, 1, 9);
+  for (const auto neighbours : {ParticleStore::Neighbours::none, ParticleStore::Neighbours::listed}) {
+    ParticleStore store(box, packing, neighbours, {1.8, 0.5});
+    const Places before = places_of(store);
+    Site step;
+    step.at[2] = -static_cast<std::int32_t>(1.5 / store.unit()[2]);
+    const Site centre = store.site_at({4, 4, 1});
+    const double exit = store.position_of(store.site_at({4, 4, -0.5}))[2];
+    std::set<std::int64_t> expected;
+    for (const auto& [id, site] : before) {
+      Vec3 x = store.position_of(site);
+      double r2 = 0;
+      for (int a = 0; a < 3; ++a) r2 += std::pow(box.minimum_image(a, x[a] - store.position_of(centre)[a]), 2);
+      if (r2 < 9 && x[2] - 1.5 < exit) expected.insert(id);
+    }
+    EXPECT_GT(expected.size(), 5U);
+    store.move_within(centre, 3, step);
+    const std::vector<std::int64_t> left = store.take_left();
+    EXPECT_EQ(std::set<std::int64_t>(left.begin(), left.end()), expected);
+    EXPECT_EQ(store.size() + left.size(), packing.id.size());
+    EXPECT_TRUE(store.take_left().empty());
+  }
 }
 
 TEST(RandomPacking, HasTheFractionAskedForAndNoOverlaps) {
