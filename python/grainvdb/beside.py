@@ -163,7 +163,7 @@ def _laws(page: Page, results: Results, fields: Mapping[str, Fields]) -> None:
         friction = {label: lawplots.parameters(r.tables, "rheology", lawplots.FRICTION) for label, r in results.items()}
         draw.append(partial(compare.friction_against_inertial, fields, friction))
     if draw:
-        page.add("Rheology", page.picture("rheology", panels(draw, 2, (5.4, 4)), "A point per voxel, a colour per result; left out are voxels where the kernel smears the "
+        page.add("Rheology", page.picture("rheology", panels(draw, 2, (5.4, 4)), "A point per voxel of the last output time, a colour per result; left out are voxels where the kernel smears the "
                                           "edge of the material. Solid laws are drawn to compare with, not fitted; dashed: fitted in the tables of each result."))
 
 

@@ -61,12 +61,19 @@ FieldError position_error(const TracerPaths& reference, const TracerPaths& found
 }
 
 double mean_diameter_of(const Pipeline& pipeline, FrameSource& source) {
-  const std::size_t first = select_frames(pipeline.frames, source.frames().size()).at(0);
-  Frame frame = source.read(first, Column::radius | Column::type);
-  apply_selection(pipeline.select, frame.box, frame.particles);
-  const std::vector<double>& radius = frame.particles.radius;
-  if (radius.empty()) return pipeline.cutoff;
-  return 2 * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size());
+  const std::vector<std::size_t> frames = select_frames(pipeline.frames, source.frames().size());
+  for (const std::size_t k : frames) {
+    Frame frame = source.read(k, Column::radius | Column::type);
+    apply_selection(pipeline.select, frame.box, frame.particles);
+    const std::vector<double>& radius = frame.particles.radius;
+    if (!radius.empty())
+      return 2 * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size());
+  }
+  throw InputError({{source.frames()[frames.at(0)].file, 0},
+                    "tracers are compared in mean diameters, and no frame has material",
+                    {},
+                    "a frame with particles that select leaves",
+                    {}});
 }
 
 }  // namespace grainvdb

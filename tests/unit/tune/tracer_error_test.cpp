@@ -2,10 +2,14 @@
 
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
-namespace grainvdb::tracer_error_test {
+#include "grainvdb/error.hpp"
+#include "support/memory_source.hpp"
+
+namespace grainvdb::testing::tracer_error_test {
 namespace {
 
 /// Tracers that have gone `speed` · t along x and as far along y.
@@ -68,5 +72,25 @@ TEST(PathSink, KeepsNoMoreThanTenThousandTracers) {
   EXPECT_EQ(kept.time.at(0), 3);
 }
 
+Frame grains(std::int64_t step, const std::vector<double>& radius) {
+  Frame frame;
+  frame.step = step;
+  frame.box = {{0, 0, 0}, {10, 10, 10}, {true, true, true}};
+  for (std::size_t n = 0; n < radius.size(); ++n) {
+    frame.particles.id.push_back(static_cast<std::int64_t>(n) + 1);
+    for (auto& column : frame.particles.position) column.push_back(1.0 + static_cast<double>(n));
+    frame.particles.radius.push_back(radius[n]);
+    frame.particles.type.push_back(1);
+  }
+  return frame;
+}
+
+TEST(MeanDiameterOf, IsThatOfTheFirstFrameWithMaterial) {
+  MemorySource source({grains(0, {}), grains(1, {1, 2}), grains(2, {5})});
+  EXPECT_EQ(mean_diameter_of({}, source), 3);
+  MemorySource nothing({grains(0, {})});
+  EXPECT_THROW(mean_diameter_of({}, nothing), InputError);
+}
+
 }  // namespace
-}  // namespace grainvdb::tracer_error_test
+}  // namespace grainvdb::testing::tracer_error_test
