@@ -94,6 +94,8 @@ class ParticleStore {
   void move_each(std::span<const std::int32_t> places, std::span<const Site> displacements);
   /// Takes a particle out.
   void take_out(std::int32_t i);
+  /// Whether any have left since the last call of `take_left`.
+  bool has_left() const { return !left_.empty(); }
   /// The ids of those that have left since the last call, sorted.
   std::vector<std::int64_t> take_left();
   /// Fills gaps between particles in memory. Places change.
