@@ -52,7 +52,7 @@ class ParticleStore {
   };
 
   /// Centres beyond a wall are put on it. Periodic lengths must be at least four diameters; the caller checks that.
-  /// Memory: about 45 bytes per particle, 130 with lists.
+  /// Memory: about 400 bytes per (2 diameters)³ of the box, 1900 with lists.
   ParticleStore(const Box& box, const Packing& packing, Neighbours neighbours, const Floor& floor = {});
 
   /// Places, most of which hold a particle.
