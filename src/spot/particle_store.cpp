@@ -118,7 +118,7 @@ ParticleStore::Bounds ParticleStore::bounds(double distance) const {
 Site ParticleStore::site_at(const Vec3& x) const {
   Site site;
   for (std::size_t a = 0; a < 3; ++a) {
-    const double counts = std::floor((box_.wrap(static_cast<int>(a), x[a]) - origin_[a]) / unit_[a]);
+    const double counts = (box_.wrap(static_cast<int>(a), x[a]) - origin_[a]) / unit_[a];
     const double last = (box_.periodic[a] ? period_counts : open_counts) - 1;
     site.at[a] = as_signed(static_cast<std::uint32_t>(std::clamp(counts, 0.0, last)));
   }

@@ -52,7 +52,7 @@ class ParticleStore {
   };
 
   /// Centres beyond a wall are put on it. Periodic lengths must be at least four diameters; the caller checks that.
-  /// Memory: about 45 bytes per particle, 130 with lists.
+  /// Memory: about 400 bytes per (2 diameters)³ of the box, 1900 with lists.
   ParticleStore(const Box& box, const Packing& packing, Neighbours neighbours, const Floor& floor = {});
 
   /// Places, most of which hold a particle.
@@ -94,6 +94,8 @@ class ParticleStore {
   void move_each(std::span<const std::int32_t> places, std::span<const Site> displacements);
   /// Takes a particle out.
   void take_out(std::int32_t i);
+  /// Whether any have left since the last call of `take_left`.
+  bool has_left() const { return !left_.empty(); }
   /// The ids of those that have left since the last call, sorted.
   std::vector<std::int64_t> take_left();
   /// Fills gaps between particles in memory. Places change.

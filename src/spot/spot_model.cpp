@@ -14,6 +14,11 @@ namespace {
 constexpr double sinking_in_diameters = 1.8;
 constexpr double exit_in_diameters = 0.5;
 
+// std::nearbyint of a number below 2^51, without a call.
+double nearest(double x) {
+  return (x + 0x1.8p52) - 0x1.8p52;
+}
+
 using Neighbours = ParticleStore::Neighbours;
 Neighbours neighbours_for(const Relaxation& relaxation) {
   return relaxation.every > 0 && relaxation.probability > 0 ? Neighbours::listed : Neighbours::none;
@@ -169,7 +174,7 @@ Site SpotModel::rounded(const Vec3& displacement) {
   Site site;
   for (std::size_t a = 0; a < 3; ++a) {
     rest_[a] += displacement[a] / particles_.unit()[a];
-    const double whole = std::nearbyint(rest_[a]);
+    const double whole = nearest(rest_[a]);
     site.at[a] = static_cast<std::int32_t>(whole);
     rest_[a] -= whole;
   }
@@ -200,6 +205,7 @@ void SpotModel::displace(const Vec3& centre, const Vec3& step) {
   } else {
     counters_.displaced += particles_.move_within(site, parameters_.radius, displacement);
   }
+  if (!particles_.has_left()) return;
   for (const std::int64_t id : particles_.take_left()) drained_.push_back({id, time_});
 }
 

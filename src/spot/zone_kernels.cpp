@@ -38,8 +38,13 @@ HWY_INLINE int wrapped(int cell, int n) {
 }
 
 /// Distance from a coordinate to a cell, in cells.
-HWY_INLINE double distance_to(double u, int cell) {
+HWY_INLINE double distance_to(double u, double cell) {
   return std::max({0.0, cell - u, u - cell - 1});
+}
+/// The same along an axis on which the ball may touch all n cells: either way round, if it is periodic.
+HWY_INLINE double distance_in(double u, int cell, int n, bool periodic) {
+  const double there = distance_to(u, cell);
+  return periodic ? std::min({there, distance_to(u, cell - n), distance_to(u, cell + n)}) : there;
 }
 
 void find_cells(const CellView& cells, Ball& ball) {
@@ -54,10 +59,9 @@ void find_cells(const CellView& cells, Ball& ball) {
   };
   const CellRange along_x = range(0, radius), along_y = range(1, radius);
   for (int i = along_x.first; i < along_x.first + along_x.count; ++i) {
-    // All cells of a short period are visited: their distance the long way round says nothing.
-    const double dx = along_x.count == cells.cells[0] ? 0 : distance_to(u[0], i) * cells.edge[0];
+    const double dx = distance_in(u[0], i, cells.cells[0], cells.periodic[0]) * cells.edge[0];
     for (int j = along_y.first; j < along_y.first + along_y.count; ++j) {
-      const double dy = along_y.count == cells.cells[1] ? 0 : distance_to(u[1], j) * cells.edge[1];
+      const double dy = distance_in(u[1], j, cells.cells[1], cells.periodic[1]) * cells.edge[1];
       const double rest = radius * radius - dx * dx - dy * dy;
       if (rest <= 0) continue;
       const auto layers = static_cast<std::size_t>(cells.cells[2]);
