@@ -31,6 +31,10 @@ std::vector<std::size_t> up_to_stop(std::vector<std::size_t> frames, const RunRe
   return frames;
 }
 
+bool takes_from(const PlaneRun& run, const std::string& measurement) {
+  return std::find(run.measurements.begin(), run.measurements.end(), measurement) != run.measurements.end();
+}
+
 void add_bad_frames(const std::vector<BadFrame>& more, RunReport& report) {
   for (const BadFrame& frame : more)
     if (std::none_of(report.bad_frames.begin(), report.bad_frames.end(), [&](const BadFrame& known) {
@@ -94,8 +98,7 @@ void MeasurePass::visit_planes(PlaneRun& run, const RunReport& report,
   const auto take = [&](const OutputFields& output) {
     clock_.time("measure", [&] {
       for (const Entry& entry : entries_)
-        if (std::find(run.measurements.begin(), run.measurements.end(), entry.name) != run.measurements.end())
-          entry.measurement->take(output);
+        if (takes_from(run, entry.name)) entry.measurement->take(output);
     });
   };
   GoodFrames source(source_, report.bad_frames);
@@ -141,7 +144,12 @@ void MeasurePass::visit_single_frames(const RunReport& report, const std::functi
 void MeasurePass::commit(RunReport& report) {
   clock_.time("measure", [&] {
     for (const Entry& entry : entries_)
-      for (Table& table : entry.measurement->tables()) report.tables.push_back(std::move(table));
+      for (Table& table : entry.measurement->tables()) {
+        for (const PlaneRun& run : plane_runs_)
+          if (takes_from(run, entry.name))
+            table.remarks.insert(table.remarks.end(), run.remarks.begin(), run.remarks.end());
+        report.tables.push_back(std::move(table));
+      }
   });
   const OutputUnits units(source_.units(), pipeline_.reduced);
   for (Table& table : report.tables) units.convert(table);

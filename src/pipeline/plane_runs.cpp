@@ -19,23 +19,32 @@ void add_fields(const std::vector<std::string>& more, std::vector<std::string>& 
 }
 
 /// A grain has next to no share in the mean over a plane, and no correction for it is known there.
-void leave_out_self_weight(StageSettings& stages) {
-  for (const char* stage : {"temperature", "rotational_fluctuation"})
-    if (const auto it = stages.find(stage); it != stages.end()) it->second["self_weight"] = std::string("none");
+void leave_out_self_weight(PlaneRun& run) {
+  for (const std::string stage : {"temperature", "rotational_fluctuation"}) {
+    const auto it = run.pipeline.stages.find(stage);
+    if (it == run.pipeline.stages.end()) continue;
+    const auto option = it->second.find("self_weight");
+    if (option == it->second.end() || option->second == OptionValue(std::string("none"))) continue;
+    option->second = std::string("none");
+    run.remarks.push_back("Exact averages over planes take no account of stages." + stage +
+                          ".self_weight: the mean over a plane has too many grains for it to matter");
+  }
 }
 
 /// What concerns fields in three dimensions, tracers and results is left out.
-Pipeline pipeline_of_planes(const Pipeline& pipeline, const Planes& planes) {
-  Pipeline p = pipeline;
+PlaneRun run_on_planes(const Pipeline& pipeline, const Planes& planes) {
+  PlaneRun run{pipeline, {}, {}, {}};
+  Pipeline& p = run.pipeline;
   p.planes = planes;
   p.fields.clear();
   p.measure.clear();
   p.trace.reset();
+  if (p.region) run.remarks.emplace_back("Exact averages are over whole planes, whatever the region");
   p.region.reset();
   p.until.reset();
   p.scales.clear();
-  leave_out_self_weight(p.stages);
-  return p;
+  leave_out_self_weight(run);
+  return run;
 }
 
 /// The part of the kernel inside the walls must be the same all over a plane.
@@ -66,7 +75,7 @@ std::vector<PlaneRun> plane_runs(const Pipeline& pipeline) {
     auto run = std::find_if(runs.begin(), runs.end(),
                             [&](const PlaneRun& r) { return are_same(*r.pipeline.planes, needs->planes); });
     if (run == runs.end()) {
-      run = runs.insert(run, {pipeline_of_planes(pipeline, needs->planes), {}, {}});
+      run = runs.insert(run, run_on_planes(pipeline, needs->planes));
       check_walls(run->pipeline, name);
     }
     run->measurements.push_back(name);

@@ -13,6 +13,7 @@ struct PlaneRun {
   Pipeline pipeline;
   Plan plan;
   std::vector<std::string> measurements;  ///< that take its fields
+  std::vector<std::string> remarks;       ///< sentences: what the pipeline wants and exact averages do not mind
 };
 
 /// Throws ConfigError for fields whose options do not go together, and for walls that are cut off otherwise than plane

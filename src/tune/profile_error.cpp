@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "grainvdb/error.hpp"
 #include "grainvdb/measurement.hpp"
 #include "tune/nine_digits.hpp"
 
@@ -164,6 +165,15 @@ Pipeline exact_profile(Pipeline pipeline) {
   pipeline.fields.clear();
   pipeline.trace.reset();
   return pipeline;
+}
+
+void require_same_axis(const Pipeline& a, const Pipeline& b) {
+  const OptionValues *const of_a = profile_options(a), *const of_b = profile_options(b);
+  if (of_a == nullptr || of_b == nullptr) return;
+  const auto &axis_a = get<std::string>(*of_a, "axis"), &axis_b = get<std::string>(*of_b, "axis");
+  if (axis_a == axis_b) return;
+  throw ConfigError({b.location("measure"), "a profile along another axis is another quantity", axis_b, axis_a,
+                     "tune compares profiles along the axis of the pipeline"});
 }
 
 std::vector<FieldError> profile_errors(const std::vector<std::string>& quantities, const std::vector<Table>& exact,

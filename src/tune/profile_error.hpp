@@ -22,6 +22,9 @@ std::optional<Knob> profile_knob(const Pipeline& pipeline);
 /// The pipeline that measures nothing but the exact averages, at its planes.
 Pipeline exact_profile(Pipeline pipeline);
 
+/// Throws ConfigError where both measure profiles, but along different axes: those are not to be compared.
+void require_same_axis(const Pipeline& a, const Pipeline& b);
+
 /// The errors of these quantities, those of the tables of a run, at the planes of the exact ones. Means over grains are
 /// weighted with phi.
 std::vector<FieldError> profile_errors(const std::vector<std::string>& quantities, const std::vector<Table>& exact,

@@ -188,9 +188,11 @@ class Tuning {
 
   std::vector<FieldError> errors_of(const Pipeline& pipeline, const MeasuredRun& found) {
     std::vector<FieldError> errors = field_errors(points_, found.fields);
-    if (!planes_.empty())
+    if (!planes_.empty()) {
+      require_same_axis(current_, pipeline);
       for (FieldError& e : profile_errors(planes_, exact_tables(pipeline), found.tables))
         errors.push_back(std::move(e));
+    }
     if (current_.trace) errors.push_back(position_error(reference_tracers_, found.tracers, diameter_));
     return errors;
   }

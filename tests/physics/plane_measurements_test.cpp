@@ -163,6 +163,22 @@ TEST(PlaneProfile, ReadsWhatItsFieldsNeedAndNoMore) {
   EXPECT_TRUE(make_plan(measuring(scene.pipeline({}), "plane_profile", fields({"stress"}))).stages.empty());
 }
 
+TEST(PlaneProfile, SaysWhatItDoesNotMind) {
+  const Scene scene = periodic_scene();
+  Pipeline p = measuring(scene.pipeline({}), "plane_profile", fields({"phi", "temperature"}));
+  const auto has = [](const Table& table, const std::string& text) {
+    return std::any_of(table.remarks.begin(), table.remarks.end(),
+                       [&](const std::string& remark) { return remark.find(text) != std::string::npos; });
+  };
+  const Table plain = table_of(measure(p, scene.frames), "plane_profile");
+  EXPECT_FALSE(has(plain, "region") || has(plain, "self_weight"));
+  p.region = {{0, 0, 0}, {2, 2, 2}};
+  p.stages["temperature"]["self_weight"] = std::string("corrected");
+  const Table table = table_of(measure(p, scene.frames), "plane_profile");
+  EXPECT_TRUE(has(table, "whatever the region"));
+  EXPECT_TRUE(has(table, "stages.temperature.self_weight"));
+}
+
 // A grain at one height in a box without walls: φ is V w₁/A whatever the area is said to be.
 TEST(PlaneProfile, NeedsAnArea) {
   Frame frame;

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "grainvdb/error.hpp"
+
 namespace grainvdb::profile_error_test {
 namespace {
 
@@ -46,6 +48,17 @@ TEST(ProfileError, CountsPlanesThatTheExactOneAloneHas) {
   EXPECT_EQ(e.at(0).points, 1U);
   EXPECT_EQ(e.at(0).undefined, 2U);
   EXPECT_EQ(profile_errors({"profile.phi"}, {exact}, {}).at(0).undefined, 3U);
+}
+
+TEST(ProfileError, AxesAreNotCompared) {
+  const auto along = [](const std::string& measurement, const std::string& axis) {
+    Pipeline p;
+    p.measure[measurement] = {{"axis", axis}};
+    return p;
+  };
+  EXPECT_NO_THROW(require_same_axis(along("profile", "z"), along("plane_profile", "z")));
+  EXPECT_NO_THROW(require_same_axis(along("profile", "z"), Pipeline()));
+  EXPECT_THROW(require_same_axis(along("profile", "z"), along("profile", "x")), ConfigError);
 }
 
 }  // namespace
