@@ -161,7 +161,7 @@ class MeanFieldMeasurement : public Measurement {
 
 std::optional<OptionConflict> mean_field_conflict(const OptionValues& options) {
   if (auto axes = DrainageColumns::conflict(options)) return axes;
-  if (!(number_option(options, "radius") > 0)) return OptionConflict{"radius", "0", "a length above 0"};
+  if (!(number_option(options, "radius") > 0)) return OptionConflict{"radius", "none", "the radius of spots, a length above 0"};
   if (!(number_option(options, "influence") > 0)) return OptionConflict{"influence", "0", "a number above 0"};
   if ((number_option(options, "b") > 0) != (number_option(options, "discharge") > 0))
     return OptionConflict{"discharge", std::to_string(number_option(options, "discharge")),
