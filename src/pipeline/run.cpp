@@ -13,9 +13,9 @@
 #include "pipeline/output_units.hpp"
 #include "pipeline/provenance.hpp"
 #include "pipeline/run_into.hpp"
+#include "pipeline/run_passes.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/stopwatch.hpp"
-#include "pipeline/stream.hpp"
 #include "pipeline/trace_pass.hpp"
 #include "pipeline/written_box.hpp"
 
@@ -163,21 +163,13 @@ RunReport run_into(const RunSinks& to, const Pipeline& pipeline, const Plan& pla
   std::optional<Writer> writer;
   if (!sinks.empty()) writer.emplace(pipeline, plan, source, sinks);
 
+  RunPasses passes{measurements ? &*measurements : nullptr, tracers ? &*tracers : nullptr};
+  if (writer) passes.fields = [&](OutputFields output) { writer->take(std::move(output)); };
+  passes.whole_fields = streams_whole_fields(to, pipeline);
+  passes.checkpoint = checkpoint;
   RunReport report;
   try {
-    if (streams_whole_fields(to, pipeline)) {
-      const bool together = tracers && tracers->goes_along();
-      const auto take = [&](OutputFields output) {
-        if (measurements) measurements->take(output);
-        if (together) tracers->take(output);
-        if (writer) writer->take(std::move(output));
-      };
-      report = stream_fields(pipeline, plan, source, take, progress, {}, checkpoint);
-      if (tracers && !together) tracers->compute(progress);
-    } else if (tracers) {
-      report = tracers->compute(progress);
-    }
-    if (measurements) measurements->visit_frames(report, progress);
+    report = make_passes(passes, pipeline, plan, source, progress);
   } catch (...) {
     if (writer) writer->finish();  // what failed in writing is earlier
     throw;

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "pipeline/measure_needs.hpp"
-#include "pipeline/measure_pass.hpp"
-#include "pipeline/trace_pass.hpp"
+#include "pipeline/run_passes.hpp"
 
 namespace grainvdb {
 
@@ -25,23 +24,11 @@ MeasuredRun measured_run(const Pipeline& pipeline, const Plan& plan, FrameSource
   std::optional<TracePass> tracers;
   if (pipeline.trace) tracers.emplace(pipeline, plan, source, sinks);
 
-  RunReport report;
-  if (!pipeline.fields.empty() || measures_fields(pipeline)) {
-    const bool together = tracers && tracers->goes_along();
-    report = compute_fields(
-        pipeline, plan, source,
-        [&](OutputFields output) {
-          if (measurements) measurements->take(output);
-          if (together) tracers->take(output);
-          result.fields.fields = std::move(output.fields);
-        },
-        progress);
-    if (tracers && !together) tracers->compute(progress);
-  } else if (tracers) {
-    report = tracers->compute(progress);
-  }
+  RunPasses passes{measurements ? &*measurements : nullptr, tracers ? &*tracers : nullptr};
+  passes.fields = [&](OutputFields output) { result.fields.fields = std::move(output.fields); };
+  passes.whole_fields = !pipeline.fields.empty() || measures_fields(pipeline);
+  RunReport report = make_passes(passes, pipeline, plan, source, progress);
   if (measurements) {
-    measurements->visit_frames(report, progress);
     measurements->commit(report);
     result.tables = std::move(report.tables);
   }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "measure/grains.hpp"
 #include "pipeline/material.hpp"
 
 namespace grainvdb {
@@ -66,8 +66,7 @@ double mean_diameter_of(const Pipeline& pipeline, FrameSource& source) {
     Frame frame = source.read(k, Column::radius | Column::type);
     apply_selection(pipeline.select, frame.box, frame.particles);
     const std::vector<double>& radius = frame.particles.radius;
-    if (!radius.empty())
-      return 2 * std::accumulate(radius.begin(), radius.end(), 0.0) / static_cast<double>(radius.size());
+    if (!radius.empty()) return mean_diameter(radius);
   }
   throw InputError({{source.frames()[frames.at(0)].file, 0},
                     "tracers are compared in mean diameters, and no frame has material",
