@@ -1,6 +1,5 @@
 #include "splat/accumulate.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <utility>
@@ -24,7 +23,10 @@ namespace {
 class SingleSplat {
  public:
   SingleSplat(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets, const RecordSource& records)
-      : buckets_(buckets), records_(records), cutoff_(kernel.cutoff() / lattice.voxel()), peak_(kernel.value(0)) {}
+      : buckets_(buckets),
+        records_(records),
+        cutoff_(kernel.cutoff() / lattice.voxel()),
+        peak_(kernel.value(0) / summed_part) {}
 
   struct Work {
     LeafCandidates candidates;
@@ -44,7 +46,7 @@ class SingleSplat {
                active, work.sums);
     for (std::size_t c = 0; c < channels; ++c) {
       const float* sum = work.sums.sums.data() + c * leaf_size;
-      scale_sums({sum, 3 * peak_ * records_.scale(c), sum, 0}, active, work.values.data() + c * leaf_size);
+      scale_sums({sum, peak_ * records_.scale(c), sum, 0}, active, work.values.data() + c * leaf_size);
     }
     return work.values.data();
   }
@@ -143,12 +145,9 @@ LeafBuffers accumulate_buffered(Accumulation how, const Lattice& lattice, const 
                                 const Buckets& buckets, std::shared_ptr<const Topology> topology,
                                 std::span<const double> q, int channels) {
   if (how != Accumulation::single) return splat_particles(lattice, kernel, buckets, std::move(topology), q, channels);
-  LeafBuffers result(std::move(topology), channels);
-  const auto width = static_cast<std::size_t>(channels);
-  splat_in_single(lattice, kernel, buckets, *result.topology(), q, width, [&](std::size_t leaf, const double* values) {
-    std::copy_n(values, width * leaf_size, result.block(leaf, 0));
+  return kept_in_buffers(std::move(topology), channels, [&](const Topology& leaves, const LeafConsumer& consume) {
+    splat_in_single(lattice, kernel, buckets, leaves, q, static_cast<std::size_t>(channels), consume);
   });
-  return result;
 }
 
 }  // namespace grainvdb

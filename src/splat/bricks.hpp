@@ -26,6 +26,9 @@ struct LeafSplat {
   std::span<float* const> to = {};
 };
 
+/// What the sums are of: this part of W/W(0).
+constexpr double summed_part = 1.0 / 3;
+
 /// Sums of one leaf, and what is needed on the way; reused from leaf to leaf.
 struct LeafSums {
   Grow<float> sums;   ///< [channel][offset]: Σ q (1-r)³(1+3r)/3 over the candidates

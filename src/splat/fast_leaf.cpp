@@ -19,11 +19,8 @@ constexpr double faint = 1e-3;
 /// small (Σ W - n W(0)) max |q|.
 constexpr double small = 1e-2;
 
-/// What the sums are of: this part of W/W(0).
-constexpr double part = 1.0 / 3;
-
 float least(const LeafWork& work, std::size_t channel) {
-  return static_cast<float>(part * faint) * work.records.largest[channel];
+  return static_cast<float>(summed_part * faint) * work.records.largest[channel];
 }
 
 /// The voxels of a mask that lie in a box.
@@ -67,7 +64,7 @@ void FastLeafSplat::run_to(const Coord& origin, const LeafMask& active, LeafWork
 
 template <class To>
 void FastLeafSplat::scale(const LeafMask& active, const LeafWork& work, const To& to) const {
-  const double peak = kernel_.value(0) / part;
+  const double peak = kernel_.value(0) / summed_part;
   for (std::size_t c = 0; c < channels_; ++c) {
     const std::size_t w = records_.weight(c);
     scale_sums(
@@ -86,9 +83,9 @@ LeafMask FastLeafSplat::find_faint(const LeafMask& active, LeafWork& work) const
   count_below(work.records.values.data(), records_.stride(), work.candidates.count, work.limits.data(),
               work.few.data());
   const auto enough = [&](std::size_t c) {
-    return static_cast<float>(part * (static_cast<double>(work.few[c]) + faint / small));
+    return static_cast<float>(summed_part * (static_cast<double>(work.few[c]) + faint / small));
   };
-  float most = static_cast<float>(part * rim);
+  float most = static_cast<float>(summed_part * rim);
   for (std::size_t c = 0; c < channels_; ++c) most = std::max(most, enough(c));
   LeafMask any;
   if (least_of(work.sums.plain.data(), active) >= most) return any;
@@ -96,7 +93,7 @@ LeafMask FastLeafSplat::find_faint(const LeafMask& active, LeafWork& work) const
   work.faint.resize(channels_);
   for (std::size_t c = 0; c < channels_; ++c) {
     const float small_sum = work.records.reference[c] == 0 ? least(work, c) : 0.0F;
-    work.faint[c] = faint_voxels(sum(work, c), small_sum, work.sums.plain.data(), static_cast<float>(part * rim),
+    work.faint[c] = faint_voxels(sum(work, c), small_sum, work.sums.plain.data(), static_cast<float>(summed_part * rim),
                                  enough(c), active);
     any |= work.faint[c];
   }

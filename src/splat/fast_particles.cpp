@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <utility>
 
 #include <tbb/enumerable_thread_specific.h>
@@ -38,12 +37,10 @@ SparseField splat_particles_field(FieldMeta meta, const Lattice& lattice, const 
 LeafBuffers splat_particles_fast(const Lattice& lattice, const LucyKernel& kernel, const Buckets& buckets,
                                  std::shared_ptr<const Topology> topology, std::span<const double> q,
                                  std::span<const int> weight_of) {
-  LeafBuffers result(std::move(topology), static_cast<int>(weight_of.size()));
-  splat_particles_fast(lattice, kernel, buckets, *result.topology(), q, weight_of,
-                       [&](std::size_t leaf, const double* values) {
-                         std::copy_n(values, weight_of.size() * leaf_size, result.block(leaf, 0));
-                       });
-  return result;
+  return kept_in_buffers(std::move(topology), static_cast<int>(weight_of.size()),
+                         [&](const Topology& leaves, const LeafConsumer& consume) {
+                           splat_particles_fast(lattice, kernel, buckets, leaves, q, weight_of, consume);
+                         });
 }
 
 }  // namespace grainvdb

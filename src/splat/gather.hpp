@@ -135,12 +135,9 @@ void gather_leaves(const Lattice& lattice, const Buckets& buckets, double reach,
 template <class Add>
 LeafBuffers gather(const Lattice& lattice, const Buckets& buckets, double reach,
                    std::shared_ptr<const Topology> topology, int channels, const Add& add) {
-  LeafBuffers result(std::move(topology), channels);
-  const auto width = static_cast<std::size_t>(channels);
-  gather_leaves(lattice, buckets, reach, *result.topology(), width, add, [&](std::size_t l, const double* values) {
-    std::copy_n(values, width * leaf_size, result.block(l, 0));
+  return kept_in_buffers(std::move(topology), channels, [&](const Topology& leaves, const LeafConsumer& consume) {
+    gather_leaves(lattice, buckets, reach, leaves, static_cast<std::size_t>(channels), add, consume);
   });
-  return result;
 }
 
 }  // namespace grainvdb
