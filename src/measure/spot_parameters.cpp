@@ -3,11 +3,11 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 
 #include "base/nan.hpp"
 #include "grainvdb/spot_diffusion.hpp"
+#include "measure/table_numbers.hpp"
 #include "measure/weighted_line.hpp"
 
 namespace grainvdb {
@@ -101,9 +101,8 @@ std::vector<Quantity> spot_quantities(const SpotObservations& o, const SpotParam
 
 SpotObservations spot_observations(const Table& table) {
   const auto quantity = [&](const std::string& name) {
-    for (const Quantity& q : table.numbers)
-      if (q.name == name) return Estimate{q.value, q.error};
-    throw std::out_of_range("a table without " + name);
+    const Quantity& q = number_of(table, name);
+    return Estimate{q.value, q.error};
   };
   SpotObservations o;
   o.radius = quantity("radius");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/listed.hpp"
+#include "measure/table_numbers.hpp"
 #include "pipeline/number.hpp"
 #include "pipeline/text.hpp"
 
@@ -25,15 +26,10 @@ double number(const Pipeline& pipeline, const char* name) {
   return std::get<double>(options_of(pipeline).at(name));
 }
 
-const Quantity& parameter(const Table& calibration, const std::string& name) {
-  return *std::find_if(calibration.numbers.begin(), calibration.numbers.end(),
-                       [&](const Quantity& q) { return q.name == name; });
-}
-
 void check_parameters(const Pipeline& pipeline, const Table& calibration) {
   std::string missing;
   for (const char* name : {"radius", "step_side", "influence", "hop_rate", "insertion_rate"})
-    if (const double x = parameter(calibration, name).value; !std::isfinite(x) || !(x > 0))
+    if (const double x = number_of(calibration, name).value; !std::isfinite(x) || !(x > 0))
       missing += (missing.empty() ? "" : ", ") + std::string(name) + " (" + short_number(x) + ')';
   if (missing.empty()) return;
   std::string hint;
@@ -122,9 +118,9 @@ std::string line(const std::string& key, const Quantity& q) {
 // Spots that enter all over a slot of width W make profiles wider there by W²/12, beside R²/5 of their size and c²/12
 // of the kernel; DEM's may be narrower than even spots from the middle would make them.
 std::string entry_text(const Pipeline& pipeline, const Table& calibration) {
-  const double slot = number(pipeline, "slot_width"), radius = parameter(calibration, "radius").value;
+  const double slot = number(pipeline, "slot_width"), radius = number_of(calibration, "radius").value;
   const double halfway = slot * slot / 24 + radius * radius / 5 + pipeline.cutoff * pipeline.cutoff / 12;
-  const Quantity& offset = parameter(calibration, "offset");
+  const Quantity& offset = number_of(calibration, "offset");
   const bool narrow = offset.value + 2 * offset.error < halfway;
   std::string text = std::string("  entry: ") + (narrow ? "centre" : "spread") + "  # profiles have a variance of " +
                      short_number(offset.value);
@@ -133,16 +129,16 @@ std::string entry_text(const Pipeline& pipeline, const Table& calibration) {
 }
 
 std::string spots_text(const Pipeline& pipeline, const Table& calibration, double diameter) {
-  const Quantity& side = parameter(calibration, "step_side");
+  const Quantity& side = number_of(calibration, "step_side");
   const std::string dx = short_number(side.value);
-  std::string text = "\nspots:\n" + line("radius", parameter(calibration, "radius")) +
-                     line("influence", parameter(calibration, "influence")) + "  step: [" + dx + ", " + dx + ", " +
-                     short_number(parameter(calibration, "step_up").value) + "]  # ";
+  std::string text = "\nspots:\n" + line("radius", number_of(calibration, "radius")) +
+                     line("influence", number_of(calibration, "influence")) + "  step: [" + dx + ", " + dx + ", " +
+                     short_number(number_of(calibration, "step_up").value) + "]  # ";
   if (std::isfinite(side.error)) text += "+- " + short_number(side.error) + " to the sides, ";
-  const Quantity &b = parameter(calibration, "b"), &volume = parameter(calibration, "volume");
+  const Quantity &b = number_of(calibration, "b"), &volume = number_of(calibration, "volume");
   text += "b = " + short_number(b.value) + (std::isfinite(b.error) ? " +- " + short_number(b.error) : "") + '\n' +
-          line("hop_rate", parameter(calibration, "hop_rate")) +
-          line("insertion_rate", parameter(calibration, "insertion_rate")) + entry_text(pipeline, calibration) +
+          line("hop_rate", number_of(calibration, "hop_rate")) +
+          line("insertion_rate", number_of(calibration, "insertion_rate")) + entry_text(pipeline, calibration) +
           "  wall_distance: " + short_number(diameter) +
           "  # one diameter; not measured\n  # V_s/V_p = " + short_number(volume.value);
   if (std::isfinite(volume.error)) text += " +- " + short_number(volume.error);
@@ -217,7 +213,7 @@ std::string calibrated_spot_file(const Pipeline& pipeline, const Table& calibrat
     throw InputError({{frame.file}, "no grain of this dump lies above the floor", {}, {}, "Compare bottom and select"});
   const double diameter = 2 * frame.particles.radius.front();
   const Box box = container_of(pipeline, frame, grains);
-  const double radius = parameter(calibration, "radius").value;
+  const double radius = number_of(calibration, "radius").value;
   return "# The spot model of " + pipeline.file + ", by grainvdb spot calibrate: " + calibration.description +
          ".\n# Numbers in the units of the dumps.\ngrainvdb: 1\n\n" + packing_text(pipeline, frames.front()) +
          container_text(pipeline, box) + spots_text(pipeline, calibration, diameter) +

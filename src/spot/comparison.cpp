@@ -17,6 +17,7 @@
 #include "grainvdb/plan.hpp"
 #include "grainvdb/run.hpp"
 #include "measure/spot_comparison.hpp"
+#include "measure/table_numbers.hpp"
 #include "pipeline/number.hpp"
 #include "pipeline/output_units.hpp"
 #include "spot/calibration.hpp"
@@ -216,10 +217,6 @@ SpotObservations within_reach(SpotObservations corrected, const SpotTruth& made)
 /// The parameters of a spot file.
 constexpr std::array run_parameters{"radius", "step_side", "influence", "insertion_rate", "hop_rate"};
 
-const Quantity& number_of(const Table& table, const std::string& name) {
-  return *std::find_if(table.numbers.begin(), table.numbers.end(), [&](const Quantity& q) { return q.name == name; });
-}
-
 bool settled(const Table& before, const Table& now) {
   return std::all_of(run_parameters.begin(), run_parameters.end(), [&](const char* name) {
     const Quantity &old = number_of(before, name), &q = number_of(now, name);
@@ -287,8 +284,7 @@ void add_remarks(Table& t, bool has_settled) {
   if (!std::isfinite(number_of(t, "hop_rate").value))
     t.remarks.emplace_back(
         "The flow is denser than spots of any speed make it. Give a larger phi_at_rest for the direct estimate, or "
-        "take "
-        "that.");
+        "take that.");
   if (!has_settled)
     t.remarks.emplace_back("Parameters still changed by more than their errors in the last round: allow more of them.");
 }

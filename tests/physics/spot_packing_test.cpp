@@ -7,6 +7,7 @@
 #include "physics/jackknife.hpp"
 #include "physics/spot_scene.hpp"
 #include "spot/random_packing.hpp"
+#include "support/spot_parameters.hpp"
 
 namespace grainvdb::testing::spot_packing_test {
 namespace {
@@ -75,13 +76,8 @@ TEST(SpotPacking, WithoutRelaxationOverlapsBecomeThoseOfRandomPlaces) {
 // The published parameters and the published limits: B ≤ 0.002, no pair nearer than 0.99 d.
 TEST(SpotPacking, WithRelaxationHardlyAnythingOverlaps) {
   const Box box{{-9, 0, 0}, {9, 8, 14}, {false, true, false}};
-  spot::SpotParameters p = gentle_spots();
-  p.influence = 399;
-  p.hop_rate = 28;
+  spot::SpotParameters p = published_spots();
   p.insertion_rate = 200;
-  p.entry = spot::SpotParameters::Entry::spread;
-  p.wall_distance = 1;
-  p.relaxation.every = 1;
   spot::SpotModel model({box, spot::Orifice{spot::Orifice::Shape::slot, {0, 0}, 6}},
                         spot::random_packing(box, 0.58, 1, 43), p, 44);
   for (int sample = 1; sample <= 3; ++sample) {
@@ -177,13 +173,9 @@ Drainage drained_silo(const spot::SpotParameters& p) {
 // orifice let more down than gets out, and relaxation packs the rest: φ rises. Spots that begin below and stay clear of
 // the plate do not; λN/w leave, N of 84 grains at φ = 0.6.
 TEST(SpotPacking, ASiloThatDrainsStaysAsDenseAsItIsWhereSpotsStayClearOfTheFloor) {
-  spot::SpotParameters p = gentle_spots();
+  spot::SpotParameters p = published_spots();
   p.influence = 200;
-  p.hop_rate = 28;
   p.insertion_rate = 60;
-  p.entry = spot::SpotParameters::Entry::spread;
-  p.wall_distance = 1;
-  p.relaxation.every = 1;
   const Drainage over = drained_silo(p);
   p.floor_distance = p.radius;
   p.entry_depth = 2;
