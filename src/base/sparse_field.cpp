@@ -44,10 +44,14 @@ SparseField SparseField::unset(FieldMeta meta, std::shared_ptr<const Topology> t
   parallel_for(field.components_(), [&](std::size_t c) {
     const auto tree = std::make_shared<Tree>(background);
     openvdb::tree::ValueAccessor<Tree> accessor(*tree);
-    for (std::size_t l = 0; l < field.topology_->leaf_count(); ++l) {
-      Leaf* leaf = make_leaf(field.topology_->origin(l), field.topology_->mask(l), background);
-      field.leaves_[l * field.components_() + c] = leaf->buffer().data();
-      accessor.addLeaf(leaf);  // the tree owns it
+    std::vector<Leaf*> leaves(field.topology_->leaf_count());
+    for (std::size_t l = 0; l < leaves.size(); ++l) {
+      leaves[l] = make_leaf(field.topology_->origin(l), field.topology_->mask(l), background);
+      accessor.addLeaf(leaves[l]);  // the tree owns it
+    }
+    for (std::size_t l = 0; l < leaves.size(); ++l) {
+      leaves[l]->allocate();
+      field.leaves_[l * field.components_() + c] = leaves[l]->buffer().data();
     }
     auto grid = openvdb::FloatGrid::create(tree);
     grid->setName(field.meta_.name);
