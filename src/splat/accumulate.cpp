@@ -44,10 +44,9 @@ class SingleSplat {
     splat_leaf({&work.candidates, work.records.values.data(), records_.stride(), static_cast<int>(channels),
                 static_cast<float>(1 / cutoff_)},
                active, work.sums);
-    for (std::size_t c = 0; c < channels; ++c) {
-      const float* sum = work.sums.sums.data() + c * leaf_size;
-      scale_sums({sum, peak_ * records_.scale(c), sum, 0}, active, work.values.data() + c * leaf_size);
-    }
+    for (std::size_t c = 0; c < channels; ++c)
+      scale_sums(work.sums.sums, {.sum = static_cast<int>(1 + c), .unit = peak_ * records_.scale(c)}, active,
+                 work.values.data() + c * leaf_size);
     return work.values.data();
   }
 

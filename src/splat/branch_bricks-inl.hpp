@@ -96,28 +96,6 @@ HWY_INLINE void for_each_brick(F&& f) {
   }
 }
 
-/// The bits of a brick's voxels in a mask, lane by lane, and back.
-HWY_INLINE std::uint32_t brick_bits(const LeafMask& mask, const VoxelBox& brick) {
-  std::uint32_t bits = 0;
-  for (int i = 0; i < brick_x; ++i)
-    for (int j = 0; j < brick_y; ++j) {
-      const std::uint64_t row = mask.words[static_cast<std::size_t>(brick.x + i)] >> ((brick.y + j) * 8 + brick.z);
-      bits |= (static_cast<std::uint32_t>(row) & ((1U << brick_z) - 1U)) << ((i * brick_y + j) * brick_z);
-    }
-  return bits;
-}
-HWY_INLINE void set_brick_bits(LeafMask& mask, const VoxelBox& brick, std::uint32_t bits) {
-  for (int i = 0; i < brick_x; ++i)
-    for (int j = 0; j < brick_y; ++j) {
-      const std::uint64_t row = (bits >> ((i * brick_y + j) * brick_z)) & ((1U << brick_z) - 1U);
-      mask.words[static_cast<std::size_t>(brick.x + i)] |= row << ((brick.y + j) * 8 + brick.z);
-    }
-}
-HWY_INLINE int lane_offset(const VoxelBox& brick, int lane) {
-  return (brick.x + lane / (brick_y * brick_z)) * 64 + (brick.y + lane / brick_z % brick_y) * 8 + brick.z +
-         lane % brick_z;
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace grainvdb
 HWY_AFTER_NAMESPACE();

@@ -68,6 +68,47 @@ HWY_INLINE Voxels brick_voxels(const VoxelBox& brick, float h) {
   return brick_voxels_of(d, brick, h);
 }
 
+/// The bits of a brick's voxels in a mask, lane by lane, and back.
+template <class Tag = D>
+HWY_INLINE std::uint32_t brick_bits(const LeafMask& mask, const VoxelBox& brick) {
+  using B = Brick<Tag>;
+  std::uint32_t bits = 0;
+  for (int i = 0; i < B::x; ++i)
+    for (int j = 0; j < B::y; ++j) {
+      const std::uint64_t row = mask.words[static_cast<std::size_t>(brick.x + i)] >> ((brick.y + j) * 8 + brick.z);
+      bits |= (static_cast<std::uint32_t>(row) & ((1U << B::z) - 1U)) << ((i * B::y + j) * B::z);
+    }
+  return bits;
+}
+HWY_INLINE void set_brick_bits(LeafMask& mask, const VoxelBox& brick, std::uint32_t bits) {
+  for (int i = 0; i < brick_x; ++i)
+    for (int j = 0; j < brick_y; ++j) {
+      const std::uint64_t row = (bits >> ((i * brick_y + j) * brick_z)) & ((1U << brick_z) - 1U);
+      mask.words[static_cast<std::size_t>(brick.x + i)] |= row << ((brick.y + j) * 8 + brick.z);
+    }
+}
+template <class Tag = D>
+HWY_INLINE int lane_offset(const VoxelBox& brick, int lane) {
+  using B = Brick<Tag>;
+  return (brick.x + lane / (B::y * B::z)) * 64 + (brick.y + lane / B::z % B::y) * 8 + brick.z + lane % B::z;
+}
+
+/// Where the sums of a brick are among those of its leaf, see BrickSums.
+template <class Tag = D>
+HWY_INLINE std::size_t brick_number(const VoxelBox& brick) {
+  using B = Brick<Tag>;
+  return static_cast<std::size_t>(((brick.x / B::x) * (leaf_edge / B::y) + brick.y / B::y) * (leaf_edge / B::z) +
+                                  brick.z / B::z);
+}
+
+/// The lanes of a mask as bits.
+template <class Tag>
+HWY_INLINE std::uint32_t bits_of(Tag tag, hn::Mask<Tag> lanes_set) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(tag, lanes_set, bytes);
+  return bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8U;
+}
+
 /// The box of the centres of some voxels, and the squared distance from it below which candidates are picked.
 struct BoxTest {
   float middle[3];

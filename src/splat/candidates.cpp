@@ -85,18 +85,6 @@ void PickNear(const LeafCandidates& from, const VoxelBox& box, float h, Picked& 
   out.count = n;
 }
 
-/// Adds the lanes of a brick to a leaf's mask.
-void add_bits(hn::Mask<D> lanes_set, const VoxelBox& brick, LeafMask& mask) {
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(d, lanes_set, bytes);
-  const unsigned bits = bytes[0] | static_cast<unsigned>(bytes[1]) << 8U;
-  for (int i = 0; i < brick_x; ++i)
-    for (int j = 0; j < brick_y; ++j) {
-      const std::uint64_t row = bits >> ((i * brick_y + j) * brick_z) & ((1U << brick_z) - 1U);
-      mask.words[static_cast<std::size_t>(brick.x + i)] |= row << ((brick.y + j) * 8 + brick.z);
-    }
-}
-
 /// Narrows `least`, the squared distances of a brick's voxels from the nearest candidate, by those from `begin` on and
 /// then from the start of the list, until all voxels are certainly inside or `most` have been looked at.
 V NearestTo(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const float* HWY_RESTRICT z, std::size_t count,
@@ -133,8 +121,8 @@ void Cover(const LeafCandidates& all, float h, Picked& near, LeafMask& inside, L
                 least =
                     NearestTo(near.x.data(), near.y.data(), near.z.data(), near.count, near.count / 2, near.count, at);
               }
-              add_bits(hn::Lt(least, sure), {x, y, z}, inside);
-              add_bits(hn::Lt(least, possible), {x, y, z}, perhaps);
+              set_brick_bits(inside, {x, y, z}, bits_of(d, hn::Lt(least, sure)));
+              set_brick_bits(perhaps, {x, y, z}, bits_of(d, hn::Lt(least, possible)));
             }
       }
 }

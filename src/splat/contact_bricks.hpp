@@ -10,6 +10,7 @@
 #include "bin/buckets.hpp"
 #include "grainvdb/line_rule.hpp"
 #include "grainvdb/topology.hpp"
+#include "splat/brick_sums.hpp"
 #include "splat/grow.hpp"
 
 namespace grainvdb {
@@ -69,10 +70,10 @@ void reach_of_branches(const LeafBranches& leaf, const LeafMask& window, BranchS
 /// The candidates that may lie within 1 of a voxel, by the precision of the positions, in their order.
 void branches_at_voxel(const LeafBranches& leaf, int offset, std::vector<std::int32_t>& out);
 
-/// sums[channel][offset] = Σ q Σ_nodes weight (1-r)³(1+3r), for the bricks with a voxel of `mask`; other voxels are
-/// left alone.
+/// A row of sums for each channel: Σ q Σ_nodes weight (1-r)³(1+3r), in the bricks with a voxel of `mask`; those of
+/// other bricks are not set.
 void sum_branches(const LeafBranches& leaf, std::span<const BranchClass> classes, int channels, const LeafMask& mask,
-                  BranchScratch& scratch, float* sums);
+                  BranchScratch& scratch, BrickSums& sums);
 
 /// Blocks of 4³ voxels in a leaf, numbered 4 (x/4) + 2 (y/4) + z/4.
 inline constexpr int leaf_blocks = 8;

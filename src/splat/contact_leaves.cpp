@@ -9,7 +9,6 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include "base/parallel.hpp"
-#include "splat/bricks.hpp"
 #include "splat/gather.hpp"
 #include "splat/value_unit.hpp"
 
@@ -170,14 +169,12 @@ void ContactLeaves::run_in_single(const Coord& origin, const LeafMask& mask, Con
   find_cells(origin, work);
   collect(origin, work);
   sort_by_rule(work);
-  work.sums.resize(channels_ * leaf_size);
   work.values.resize(channels_ * leaf_size);
-  sum_branches(work.candidates, work.classes, static_cast<int>(channels_), mask, work.scratch, work.sums.data());
+  sum_branches(work.candidates, work.classes, static_cast<int>(channels_), mask, work.scratch, work.sums);
   const double peak = kernel_.value(0);
-  for (std::size_t c = 0; c < channels_; ++c) {
-    const float* sum = work.sums.data() + c * leaf_size;
-    scale_sums({sum, peak * scale_[c], sum, 0}, mask, work.values.data() + c * leaf_size);
-  }
+  for (std::size_t c = 0; c < channels_; ++c)
+    scale_sums(work.sums, {.sum = static_cast<int>(c), .unit = peak * scale_[c]}, mask,
+               work.values.data() + c * leaf_size);
 }
 
 void ContactLeaves::sum_again(const Coord& origin, const LeafMask& mask, ContactWork& work) const {
@@ -190,8 +187,9 @@ void ContactLeaves::sum_again(const Coord& origin, const LeafMask& mask, Contact
     const int block = (v >> 8) * 4 + ((v >> 5) & 1) * 2 + ((v >> 2) & 1);
     const float* bar = work.faint.data() + static_cast<std::size_t>(block) * channels_;
     work.again.clear();
-    for (std::size_t c = 0; c < channels_; ++c)
-      if (std::abs(work.sums[c * leaf_size + static_cast<std::size_t>(v)]) < bar[c]) work.again.push_back(c);
+    const float* sum = work.sums.values.data() + work.sums.place(v);
+    for (std::size_t c = 0; c < channels_; ++c, sum += work.sums.lanes)
+      if (std::abs(*sum) < bar[c]) work.again.push_back(c);
     if (work.again.empty()) return;
     branches_at_voxel(work.candidates, v, work.at_voxel);
     leave_out_large_sums(v, bar, work);

@@ -19,7 +19,8 @@ struct ContactWork {
   std::vector<DoubtfulVoxel> doubtful;
   std::vector<std::int32_t> at_voxel;
   std::vector<std::size_t> again;  // channels of a voxel to be summed in double
-  std::vector<float> sums, faint, certain;
+  BrickSums sums;
+  std::vector<float> faint, certain;
   std::vector<double> values;  // [channel][offset]
   BranchScratch scratch;
 };

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "splat/contact_bricks.hpp"
@@ -119,9 +118,9 @@ constexpr auto add_of = adds_for(std::make_integer_sequence<int, widest>());
 // ε² per (extent of the brick)²: twice 4 roundings by 2^-24 of terms that are at most 4 extents² where q is near zero.
 constexpr float rounding2 = 2e-6F;
 
-/// The sums over one class at the voxels of a brick.
+/// Adds the sums over one class at the voxels of a brick.
 HWY_INLINE void add_class(const LeafBranches& leaf, const BranchClass& members, const VoxelBox& brick, int channels,
-                          BranchScratch& scratch) {
+                          BranchScratch& scratch, float* HWY_RESTRICT sums) {
   const float h = leaf.voxel;
   const CentredBox box = centres_of(brick, brick_x, brick_y, brick_z, h);
   const std::size_t n = pick_branches(leaf, members.first, members.last, box, scratch.chosen.data());
@@ -136,25 +135,21 @@ HWY_INLINE void add_class(const LeafBranches& leaf, const BranchClass& members, 
     for (int first = 0; first < channels; first += widest)
       add_of[static_cast<std::size_t>(std::min(widest, channels - first))](
           scratch.weights.data(), leaf.records + 3 + first, leaf.stride, leaf.entry.data(), chosen, now,
-          scratch.sums.data() + first * lanes);
+          sums + first * lanes);
   }
 }
 
 void SumBranches(const LeafBranches& leaf, std::span<const BranchClass> classes, int channels, const LeafMask& mask,
-                 BranchScratch& scratch, float* HWY_RESTRICT out) {
+                 BranchScratch& scratch, BrickSums& out) {
   const std::size_t width = static_cast<std::size_t>(channels);
   scratch.chosen.resize(leaf.size() + 2 * lanes);
   scratch.weights.room(chunk * lanes);
-  float* const sums = scratch.sums.room(width * lanes);
+  float* const all = out.room(lanes, channels);
   for_each_brick([&](const VoxelBox& brick) HWY_ATTR {
     if (brick_bits(mask, brick) == 0) return;
+    float* const sums = all + brick_number(brick) * width * lanes;
     std::fill_n(sums, width * lanes, 0.0F);
-    for (const BranchClass& members : classes) add_class(leaf, members, brick, channels, scratch);
-    for (int c = 0; c < channels; ++c)
-      for (int i = 0; i < brick_x; ++i)
-        for (int j = 0; j < brick_y; ++j)
-          std::memcpy(out + c * leaf_size + (brick.x + i) * 64 + (brick.y + j) * 8 + brick.z,
-                      sums + c * lanes + (i * brick_y + j) * brick_z, brick_z * sizeof(float));
+    for (const BranchClass& members : classes) add_class(leaf, members, brick, channels, scratch, sums);
   });
 }
 
@@ -216,7 +211,7 @@ BranchRule::BranchRule(std::span<const LineNode> nodes)
 HWY_EXPORT(SumBranches);
 HWY_EXPORT(FaintLimits);
 void sum_branches(const LeafBranches& leaf, std::span<const BranchClass> classes, int channels, const LeafMask& mask,
-                  BranchScratch& scratch, float* sums) {
+                  BranchScratch& scratch, BrickSums& sums) {
   HWY_DYNAMIC_DISPATCH(SumBranches)(leaf, classes, channels, mask, scratch, sums);
 }
 void faint_limits(const LeafBranches& leaf, int channels, BranchScratch& scratch, float* faint) {

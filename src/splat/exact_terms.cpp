@@ -15,21 +15,6 @@ namespace {
 
 constexpr hn::CappedTag<double, 8> doubles;
 
-/// The candidates that may lie within the cutoff of a voxel, by the precision of their positions.
-std::size_t FindNear(const Picked& from, const VoxelBox& voxel, float h, std::int32_t* HWY_RESTRICT of) {
-  const auto at = [&](int offset) { return hn::Set(d, h * (static_cast<float>(offset) - 3.5F)); };
-  const V x = at(voxel.x), y = at(voxel.y), z = at(voxel.z), limit = hn::Set(d, 1 + margin);
-  std::size_t n = 0;
-  for (std::size_t i = 0; i < from.count; i += lanes) {
-    const V dx = hn::Sub(x, hn::Load(d, from.x.data() + i)), dy = hn::Sub(y, hn::Load(d, from.y.data() + i)),
-            dz = hn::Sub(z, hn::Load(d, from.z.data() + i));
-    const V r2 = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
-    const auto near = hn::And(hn::Lt(r2, limit), hn::FirstN(d, from.count - i));
-    n += store_some(hn::Load(di, from.at.data() + i), hn::RebindMask(di, near), di, of + n);
-  }
-  return n;
-}
-
 /// Turns squared distances, whose roots times `unit` are in units of the cutoff, into peak (1-r)³(1+3r), 0 outside the
 /// support.
 void WeighTerms(double unit, double peak, std::size_t count, double* HWY_RESTRICT w) {
@@ -71,28 +56,28 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace grainvdb {
-HWY_EXPORT(FindNear);
 HWY_EXPORT(WeighTerms);
 HWY_EXPORT(SumTerms);
 
-void find_terms(const Buckets& buckets, const LeafCandidates& candidates, const Picked& picked, const Coord& leaf,
-                int voxel, double h, const LucyKernel& kernel, ExactTerms& out) {
+void find_terms(const Buckets& buckets, const LeafCandidates& candidates, std::span<const std::int32_t> chosen,
+                const Coord& leaf, int voxel, double h, const LucyKernel& kernel, ExactTerms& out) {
   const Coord at = voxel_at(leaf, voxel);
-  const Coord in_leaf = voxel_at({0, 0, 0}, voxel);
-  double* const w = out.w.room(picked.count);
-  std::int32_t* const of = out.of.room(picked.count);
-  out.count = HWY_DYNAMIC_DISPATCH(FindNear)(picked, {in_leaf.x, in_leaf.y, in_leaf.z, 1},
-                                             static_cast<float>(h / kernel.cutoff()), of);
+  const double* const x = buckets.index[0].data();
+  const double* const y = buckets.index[1].data();
+  const double* const z = buckets.index[2].data();
+  const double reach2 = kernel.cutoff() * kernel.cutoff();
+  double* const w = out.w.room(chosen.size());
+  std::int32_t* const of = out.of.room(chosen.size());
   // The squared distances are those that decide whether a voxel is active, to the last bit.
-  for (std::size_t k = 0; k < out.count; ++k) {
-    const std::size_t e = candidates.entry[static_cast<std::size_t>(of[k])];
-    double r2 = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double distance = (at[a] - buckets.index[static_cast<std::size_t>(a)][e]) * h;
-      r2 += distance * distance;
-    }
-    w[k] = r2;
+  std::size_t n = 0;
+  for (const std::int32_t k : chosen) {
+    const std::size_t e = candidates.entry[static_cast<std::size_t>(k)];
+    const double dx = (at.x - x[e]) * h, dy = (at.y - y[e]) * h, dz = (at.z - z[e]) * h;
+    w[n] = dx * dx + dy * dy + dz * dz;
+    of[n] = k;
+    n += w[n] < reach2 ? 1 : 0;
   }
+  out.count = n;
   // So are the roots, and thus W to its last few bits.
   const double inverse = 1 / kernel.cutoff();
   HWY_DYNAMIC_DISPATCH(WeighTerms)(inverse, kernel.value(0), out.count, w);

@@ -2,6 +2,7 @@
 /// The fast particle splat of one leaf, whatever the values that are summed: brick sums in single precision, and sums
 /// in double where those cannot be trusted.
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,16 +17,22 @@
 
 namespace grainvdb {
 
+/// A sum that took the place of one in single precision.
+struct SumInDouble {
+  std::size_t channel;
+  std::int32_t offset;  // of its voxel in the leaf
+  double value;
+};
+
 /// What one thread needs on the way; reused from leaf to leaf.
 struct LeafWork {
   LeafCandidates candidates;
   LeafRecords records;
+  std::vector<float> largest;  // |value| of each channel without a reference
   LeafSums sums;
-  Picked near;                     // candidates of a block with voxels to be summed again
-  ExactTerms terms;                // of one such voxel
-  std::vector<double> exact;       // their sums
-  std::vector<LeafMask> faint;     // of each channel
-  std::vector<float> limits, few;  // of each channel
+  ExactTerms terms;                // of a voxel that is summed again
+  std::vector<double> exact;       // its sums
+  std::vector<SumInDouble> again;  // those of them that were in doubt
   std::vector<double> values;      // [channel][offset]
 };
 
@@ -44,23 +51,17 @@ class FastLeafSplat {
   const double* run(const Coord& origin, const LeafMask& active, LeafWork& work) const;
   /// The same in single precision, to the 512 values of each channel.
   void run(const Coord& origin, const LeafMask& active, LeafWork& work, std::span<float* const> to) const;
+  /// Adds the doubtful sums of a brick, in double precision, to `again` of the work.
+  void sum_again(const Coord& origin, const DoubtfulBrick& brick, LeafWork& work) const;
 
  private:
   float voxel() const { return static_cast<float>(1 / cutoff_); }
-  const float* sum(const LeafWork& work, std::size_t channel) const {
-    return work.sums.sums.data() + channel * leaf_size;
-  }
   /// `far`: where the values go if that memory is not in the cache.
   template <class To>
   void run_to(const Coord& origin, const LeafMask& active, LeafWork& work, std::span<float* const> far,
               const To& to) const;
   template <class To>
   void scale(const LeafMask& active, const LeafWork& work, const To& to) const;
-  LeafMask find_faint(const LeafMask& active, LeafWork& work) const;
-  template <class To>
-  void sum_again(const Coord& origin, const LeafMask& active, LeafWork& work, const To& to) const;
-  template <class To>
-  void sum_in_double(const Coord& origin, int offset, LeafWork& work, const To& to) const;
 
   const Lattice& lattice_;
   const LucyKernel& kernel_;

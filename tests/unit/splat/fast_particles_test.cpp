@@ -93,10 +93,8 @@ TEST_P(FastParticleSplat, BricksOfEitherSizeGiveTheSameSums) {
     sums(false, whole);
     sums(true, half);
     topology->mask(leaf).for_each([&](int v) {
-      const auto offset = static_cast<std::size_t>(v);
-      EXPECT_EQ(whole.plain[offset], half.plain[offset]);
-      for (std::size_t c = 0; c < channels; ++c)
-        EXPECT_EQ(whole.sums[c * leaf_size + offset], half.sums[c * leaf_size + offset]);
+      for (int row = 0; row <= static_cast<int>(channels); ++row)
+        EXPECT_EQ(whole.sums.at(row, v), half.sums.at(row, v));
     });
   }
 }
