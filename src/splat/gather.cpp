@@ -1,6 +1,12 @@
 #include "splat/gather.hpp"
 
-#include <limits>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 
 namespace grainvdb {
 
@@ -26,55 +32,89 @@ LeafMask LeafWindow::mask() const {
   return mask;
 }
 
-std::vector<Coord> leaves_in_reach(const Lattice& lattice, const Buckets& buckets, double reach) {
-  std::vector<Coord> leaves;
-  // Cells come ascending in z within a row of the same x and y: each row of leaves they reach is added to where it
-  // ended, so that neighbours in a row add little twice.
-  struct Row {
-    std::int32_t x, y, end;
-  };
-  std::vector<Row> rows;
-  const auto row = [&](std::int32_t x, std::int32_t y) -> Row& {
-    for (Row& r : rows)
-      if (r.x == x && r.y == y) return r;
-    return rows.emplace_back(Row{x, y, std::numeric_limits<std::int32_t>::min()});
-  };
-  struct Range {
-    std::array<std::int32_t, 3> low, high;
-  };
-  std::vector<Range> reached(buckets.cells.size());
-  parallel_for(reached.size(), [&](std::size_t cell) {
-    for (int a = 0; a < 3; ++a) {
-      auto& low = reached[cell].low[a];
-      auto& high = reached[cell].high[a];
-      const double* index = buckets.index[a].data();
-      const auto [least, greatest] = std::minmax_element(index + buckets.start[cell], index + buckets.start[cell + 1]);
-      low = static_cast<std::int32_t>(std::floor(*least - reach));
-      high = static_cast<std::int32_t>(std::ceil(*greatest + reach));
-      if (const auto& period = lattice.period(a)) {
-        low = std::max(low, period->first);
-        high = std::min(high, period->first + period->count - 1);
-      }
+namespace {
+
+// Leaves of one row along z, from the first to before the end.
+struct LeafRun {
+  std::int32_t x, y, first, end;
+  auto operator<=>(const LeafRun&) const = default;
+};
+
+struct Extent {
+  double least, greatest;
+};
+
+// In four strands: the next comparison need not wait for the last one.
+Extent extent(std::span<const double> x) {
+  std::array<double, 4> least{x[0], x[0], x[0], x[0]}, greatest = least;
+  for (std::size_t i = 0; i < x.size(); i += 4)
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double value = x[std::min(i + k, x.size() - 1)];
+      least[k] = value < least[k] ? value : least[k];
+      greatest[k] = value > greatest[k] ? value : greatest[k];
     }
-  });
-  for (std::size_t cell = 0; cell < buckets.cells.size(); ++cell) {
+  return {*std::min_element(least.begin(), least.end()), *std::max_element(greatest.begin(), greatest.end())};
+}
+
+// The voxels that the entries of a cell may reach, a box.
+struct Reached {
+  std::array<std::int32_t, 3> low, high;
+  bool none() const { return low[0] > high[0] || low[1] > high[1] || low[2] > high[2]; }
+};
+
+Reached reached_by(const Lattice& lattice, const Buckets& buckets, std::size_t cell, double reach) {
+  Reached box{};
+  for (int a = 0; a < 3; ++a) {
+    const auto& index = buckets.index[a];
+    const Extent entries = extent(std::span(index.data(), index.size())
+                                      .subspan(buckets.start[cell], buckets.start[cell + 1] - buckets.start[cell]));
+    box.low[a] = static_cast<std::int32_t>(std::floor(entries.least - reach));
+    box.high[a] = static_cast<std::int32_t>(std::ceil(entries.greatest + reach));
+    if (const auto& period = lattice.period(a)) {
+      box.low[a] = std::max(box.low[a], period->first);
+      box.high[a] = std::min(box.high[a], period->first + period->count - 1);
+    }
+  }
+  return box;
+}
+
+// Runs in the rows about a row of cells, ascending in z within each. Some leaves are in several.
+std::vector<LeafRun> runs_in_reach(const Buckets& buckets, std::span<const Reached> reached) {
+  std::vector<LeafRun> runs;
+  std::size_t row = 0;  // where the runs about this row of cells begin
+  for (std::size_t cell = 0; cell < reached.size(); ++cell) {
     if (cell == 0 || buckets.cells[cell - 1].x != buckets.cells[cell].x ||
         buckets.cells[cell - 1].y != buckets.cells[cell].y)
-      rows.clear();
+      row = runs.size();
+    if (reached[cell].none()) continue;
     const auto& [low, high] = reached[cell];
-    if (low[0] > high[0] || low[1] > high[1] || low[2] > high[2]) continue;
-    const Coord first = leaf_origin({low[0], low[1], low[2]});
-    for (std::int32_t x = first.x; x <= high[0]; x += leaf_edge)
-      for (std::int32_t y = first.y; y <= high[1]; y += leaf_edge) {
-        Row& r = row(x, y);
-        for (std::int32_t z = std::max(first.z, r.end); z <= high[2]; z += leaf_edge) {
-          leaves.push_back({x, y, z});
-          r.end = z + leaf_edge;
-        }
+    const Coord first = leaf_origin({low[0], low[1], low[2]}), last = leaf_origin({high[0], high[1], high[2]});
+    for (std::int32_t x = first.x; x <= last.x; x += leaf_edge)
+      for (std::int32_t y = first.y; y <= last.y; y += leaf_edge) {
+        const auto same = [&](const LeafRun& r) { return r.x == x && r.y == y && r.end >= first.z; };
+        const auto it = std::find_if(runs.begin() + static_cast<std::ptrdiff_t>(row), runs.end(), same);
+        if (it == runs.end())
+          runs.push_back({x, y, first.z, last.z + leaf_edge});
+        else
+          it->end = std::max(it->end, last.z + leaf_edge);
       }
   }
-  std::sort(leaves.begin(), leaves.end());
-  leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+  return runs;
+}
+
+}  // namespace
+
+std::vector<Coord> leaves_in_reach(const Lattice& lattice, const Buckets& buckets, double reach) {
+  std::vector<Reached> reached(buckets.cells.size());
+  parallel_for(reached.size(), [&](std::size_t cell) { reached[cell] = reached_by(lattice, buckets, cell, reach); });
+  std::vector<LeafRun> runs = runs_in_reach(buckets, reached);
+  std::sort(runs.begin(), runs.end());
+  std::vector<Coord> leaves;
+  for (const LeafRun& run : runs) {
+    const bool same_row = !leaves.empty() && leaves.back().x == run.x && leaves.back().y == run.y;
+    const std::int32_t first = same_row ? std::max(run.first, leaves.back().z + leaf_edge) : run.first;
+    for (std::int32_t z = first; z < run.end; z += leaf_edge) leaves.push_back({run.x, run.y, z});
+  }
   return leaves;
 }
 

@@ -194,8 +194,10 @@ Rows rows_of(const Buckets& buckets, std::size_t cell, std::span<const double> q
   for (std::size_t k = 0; k < count; ++k) {
     if (k + ahead < count)
       for (std::size_t c = 0; c < channels; c += line) __builtin_prefetch(row(k + ahead) + c);
-    std::copy_n(row(k), channels, to.data() + k * stride);
-    std::fill_n(to.data() + k * stride + channels, stride - channels, 0.0);
+    // By hand: rows are too short for the calls that library functions make.
+    double* const copy = to.data() + k * stride;
+    for (std::size_t c = 0; c < channels; ++c) copy[c] = row(k)[c];
+    for (std::size_t c = channels; c < stride; ++c) copy[c] = 0;
   }
   return {to.data(), count, stride};
 }
