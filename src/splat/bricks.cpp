@@ -34,10 +34,10 @@ HWY_INLINE void for_each_brick(const VoxelBox& box, const F& f) {
       for (int z = 0; z < block; z += B::z) f(n++, VoxelBox{box.x + x, box.y + y, box.z + z});
 }
 
-/// Squared distances along one axis from the bricks of a block, which are `size` voxels long.
-template <int size>
+/// Squared distances along one axis from parts of `size` voxels, one after the other.
+template <int size, int parts>
 struct Beyond {
-  static constexpr int count = block / size;
+  static constexpr int count = parts;
   Beyond(int first, float h) {
     const float half = 0.5F * h * static_cast<float>(size - 1);
     reach = hn::Set(d, half);
@@ -53,14 +53,48 @@ struct Beyond {
   V middle[count];
 };
 
+/// The candidates of all blocks of a leaf. Distances along one axis are the same for four of them.
+HWY_NOINLINE void pick_blocks(const LeafCandidates& all, float h, std::array<Picked, LeafSums::blocks>& out) {
+  const Beyond<block, 2> along(0, h);
+  float *x[LeafSums::blocks], *y[LeafSums::blocks], *z[LeafSums::blocks];
+  std::int32_t* at[LeafSums::blocks];
+  for (std::size_t b = 0; b < LeafSums::blocks; ++b) {
+    x[b] = out[b].x.room(all.count);
+    y[b] = out[b].y.room(all.count);
+    z[b] = out[b].z.room(all.count);
+    at[b] = out[b].at.room(all.count);
+    out[b].count = 0;
+  }
+  const V limit = hn::Set(d, 1 + margin);
+  auto place = hn::Iota(di, 0);
+  for (std::size_t i = 0; i < all.count; i += lanes, place = hn::Add(place, hn::Set(di, lanes))) {
+    const Voxels v{hn::Load(d, all.x.data() + i), hn::Load(d, all.y.data() + i), hn::Load(d, all.z.data() + i)};
+    const auto valid = hn::FirstN(d, all.count - i);
+    V dx[2], dy[2], dz[2];
+    along(v.x, dx);
+    along(v.y, dy);
+    along(v.z, dz);
+    for (std::size_t b = 0; b < LeafSums::blocks; ++b) {
+      const V r2 = hn::Add(hn::Add(dx[b / 4], dy[b / 2 % 2]), dz[b % 2]);
+      const auto near = hn::And(hn::Lt(r2, limit), valid);
+      if (hn::AllFalse(d, near)) continue;
+      const std::size_t n = out[b].count;
+      store_some(v.x, near, d, x[b] + n);
+      store_some(v.y, near, d, y[b] + n);
+      store_some(v.z, near, d, z[b] + n);
+      out[b].count += store_some(place, hn::RebindMask(di, near), di, at[b] + n);
+    }
+  }
+}
+
 /// The candidates of every brick of a block: places in the leaf's list, as many more as weigh_and_sum looks ahead.
 template <class Tag>
 HWY_NOINLINE void pick_bricks(const Picked& near, const VoxelBox& box, float h,
                               std::array<Grow<std::int32_t>, LeafSums::most_bricks>& lists, std::size_t* counts) {
   using B = Brick<Tag>;
-  const Beyond<B::x> along_x(box.x, h);
-  const Beyond<B::y> along_y(box.y, h);
-  const Beyond<B::z> along_z(box.z, h);
+  const Beyond<B::x, block / B::x> along_x(box.x, h);
+  const Beyond<B::y, block / B::y> along_y(box.y, h);
+  const Beyond<B::z, block / B::z> along_z(box.z, h);
   constexpr int bricks = along_x.count * along_y.count * along_z.count;
   std::int32_t* to[bricks];
   for (std::size_t b = 0; b < bricks; ++b) to[b] = lists[b].room(near.count + look_ahead);
@@ -121,16 +155,16 @@ void SplatBlocks(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
   float* const sums = out.sums.room(B::lanes, rows);
   const LeafCandidates& all = *leaf.candidates;
   const Sources from{all.x.data(), all.y.data(), all.z.data(), leaf.values, leaf.stride};
-  int eighth = 0;
+  pick_blocks(all, leaf.voxel, out.near);
+  std::size_t eighth = 0;
   for (int bx = 0; bx < 8; bx += block)
     for (int by = 0; by < 8; by += block)
-      for (int bz = 0; bz < 8; bz += block) {
+      for (int bz = 0; bz < 8; bz += block, ++eighth) {
         const VoxelBox box{bx, by, bz, block};
-        ask_for(leaf.to, eighth++);
+        ask_for(leaf.to, static_cast<int>(eighth));
         if (!any_active(active, box)) continue;
-        pick_near(all, box, leaf.voxel, out.near);
         std::size_t counts[LeafSums::most_bricks];
-        pick_bricks<Tag>(out.near, box, leaf.voxel, out.chosen, counts);
+        pick_bricks<Tag>(out.near[eighth], box, leaf.voxel, out.chosen, counts);
         for_each_brick<Tag>(box, [&](std::size_t b, const VoxelBox& brick) {
           const std::uint32_t lanes_active = brick_bits<Tag>(active, brick);
           if (lanes_active == 0) return;
