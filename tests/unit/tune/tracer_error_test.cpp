@@ -92,5 +92,25 @@ TEST(MeanDiameterOf, IsThatOfTheFirstFrameWithMaterial) {
   EXPECT_THROW(mean_diameter_of({}, nothing), InputError);
 }
 
+/// Its first frame cannot be read.
+class BadFirstFrame final : public MemorySource {
+ public:
+  using MemorySource::MemorySource;
+  Frame read(std::size_t k, ColumnSet wanted) override {
+    if (k == 0) throw InputError({{"first", 0}, "a bad frame", {}, {}, {}});
+    return MemorySource::read(k, wanted);
+  }
+};
+
+TEST(MeanDiameterOf, PassesOverBadFramesWhereTheInputSaysSo) {
+  BadFirstFrame source({grains(0, {7}), grains(1, {1, 2})});
+  Pipeline pipeline;
+  EXPECT_THROW(mean_diameter_of(pipeline, source), InputError);
+  pipeline.input.on_error = OnError::skip_frame;
+  EXPECT_EQ(mean_diameter_of(pipeline, source), 3);
+  BadFirstFrame alone({grains(0, {7})});
+  EXPECT_THROW(mean_diameter_of(pipeline, alone), InputError);
+}
+
 }  // namespace
 }  // namespace grainvdb::testing::tracer_error_test
