@@ -1,6 +1,7 @@
 #include "pipeline/measure_pass.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -35,12 +36,17 @@ bool takes_from(const PlaneRun& run, const std::string& measurement) {
   return std::find(run.measurements.begin(), run.measurements.end(), measurement) != run.measurements.end();
 }
 
-void add_bad_frames(const std::vector<BadFrame>& more, RunReport& report) {
-  for (const BadFrame& frame : more)
-    if (std::none_of(report.bad_frames.begin(), report.bad_frames.end(), [&](const BadFrame& known) {
-          return frame.step ? known.step == frame.step : to_string(known) == to_string(frame);
-        }))
-      report.bad_frames.push_back(frame);
+/// One entry a frame, with all that is wrong with it: passes that read other columns find other faults.
+void add_bad_frames(const std::vector<BadFrame>& more, std::vector<BadFrame>& all) {
+  for (const BadFrame& frame : more) {
+    const auto known = std::find_if(all.begin(), all.end(), [&](const BadFrame& k) {
+      return frame.step ? k.step == frame.step : to_string(k) == to_string(frame);
+    });
+    if (known == all.end())
+      all.push_back(frame);
+    else if (known->reason.find(frame.reason) == std::string::npos)
+      known->reason += "; " + frame.reason;
+  }
 }
 
 }  // namespace
@@ -105,7 +111,8 @@ void MeasurePass::visit_planes(PlaneRun& run, const RunReport& report,
   const RunReport on_planes = compute_fields(run.pipeline, run.plan, source, take, progress);
   measured_ = std::max(measured_, on_planes.frames);
   for (const auto& [step, seconds] : on_planes.seconds) seconds_on_planes_.emplace_back(step + " on planes", seconds);
-  bad_on_planes_.insert(bad_on_planes_.end(), on_planes.bad_frames.begin(), on_planes.bad_frames.end());
+  std::copy_if(on_planes.bad_frames.begin(), on_planes.bad_frames.end(), std::back_inserter(bad_on_planes_),
+               [&](const BadFrame& frame) { return !source.leaves_out(frame); });
 }
 
 void MeasurePass::visit_single_frames(const RunReport& report, const std::function<void(const Progress&)>& progress) {
@@ -153,8 +160,8 @@ void MeasurePass::commit(RunReport& report) {
   });
   const OutputUnits units(source_.units(), pipeline_.reduced);
   for (Table& table : report.tables) units.convert(table);
-  add_bad_frames(bad_.list(source_), report);
-  add_bad_frames(bad_on_planes_, report);
+  add_bad_frames(bad_.list(source_), report.bad_frames);
+  add_bad_frames(bad_on_planes_, report.bad_frames);
   report.tables_from = provenance_of(pipeline_, plan_, source_, up_to_stop(wanted_, report), report);
   report.frames = std::max(report.frames, measured_);
   report.seconds.insert(report.seconds.end(), clock_.seconds().begin(), clock_.seconds().end());
