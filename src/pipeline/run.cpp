@@ -57,7 +57,9 @@ class Writer {
   bool begun_ = false;
   Stopwatch clock_;
   std::mutex turn_;  // no call ever waits: the thread sanitizer does not see TBB's own hand-over
-  tbb::task_group behind_;
+  // Else the tasks would be those of the pipeline that hands over the first output time, which ends before them.
+  tbb::task_group_context apart_{tbb::task_group_context::isolated};
+  tbb::task_group behind_{apart_};
 };
 
 Writer::Writer(const Pipeline& pipeline, const Plan& plan, FrameSource& source, const Sinks& sinks)

@@ -181,6 +181,17 @@ TEST_F(SkippedFrames, EndTheRunUnlessAskedFor) {
   EXPECT_THROW(run(p, faulty), InputError);
 }
 
+// A pass behind that for fields fails, whose output may still be on its way to the sinks.
+TEST_F(SkippedFrames, EndTheRunInALaterPass) {
+  Pipeline p = skipping({"phi"});
+  p.input.on_error = OnError::error;
+  p.window = 1;
+  measure_by_default(p, "coordination");
+  p.measure["coordination"]["contacts"] = std::string("dump");
+  FaultySource faulty(frames_, {{60, Column::contacts}});
+  for (int n = 0; n < 20; ++n) EXPECT_THROW(run(p, faulty), InputError);
+}
+
 TEST_F(SkippedFrames, LeaveTheirWindowTheRest) {
   Pipeline p = skipping({"phi", "kinetic_stress"});
   p.window = 3;
