@@ -68,7 +68,7 @@ class Stream {
         schedule_(schedule_windows(time_windows(pipeline, plan), wanted_.size())),
         averager_(pipeline, plan, schedule_, lattice, region),
         walls_(WallTreatment::make(pipeline, plan, lattice, source, wanted_)),
-        tally_(images_per_particle(lattice, pipeline.cutoff)) {}
+        tally_(images_per_particle(lattice, pipeline)) {}
 
   RunReport run();
   /// Only the visits that further frames would not change.
@@ -129,6 +129,7 @@ RunReport Stream::run() {
   last_window_ = schedule_.windows.size() - 1;
   for (std::size_t k = 0; k < outputs_; ++k) take_(checkpoint_->load_output(k, lattice_));
   go_through(std::span(visits).subspan(now_.frames_done));
+  if (checkpoint_ != nullptr) save_progress();  // passes may follow
 
   RunReport report = tally_.report(plan_, pipeline_);
   report.frames = schedule_.frame_count() - bad_.count();
@@ -160,6 +161,7 @@ std::size_t Stream::run_certain() {
 }
 
 void Stream::go_through(std::span<const Visit> visits) {
+  if (visits.empty()) return;
   // What runs in parallel within a step is isolated: a thread that waits for the rest of it does not begin another
   // step.
   const std::size_t in_flight = std::min(frames_in_flight(pipeline_.limits), visits.size());

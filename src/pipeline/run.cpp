@@ -189,8 +189,10 @@ RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& 
                        const std::function<void(const Progress&)>& progress,
                        const std::optional<CheckpointOptions>& checkpoint) {
   std::optional<Checkpoint> kept;
-  if (checkpoint && streams_whole_fields({sinks, tracer_sinks}, pipeline)) {
-    check_against_input(pipeline, plan, source);  // by which all files of the input are known
+  const bool whole_fields = streams_whole_fields({sinks, tracer_sinks}, pipeline);
+  if (checkpoint && (whole_fields || measures_planes(pipeline))) {
+    // By these checks all files of the input are known.
+    whole_fields ? check_against_input(pipeline, plan, source) : check_measure_against_input(pipeline, source);
     kept.emplace(*checkpoint, key_of_run(pipeline, source));
   }
   return run_into({sinks, tracer_sinks}, pipeline, plan, source, progress, kept ? &*kept : nullptr);
