@@ -19,6 +19,7 @@
 #include "pipeline/clip_fields.hpp"
 #include "pipeline/derive_errors.hpp"
 #include "pipeline/derive_fields.hpp"
+#include "pipeline/no_material.hpp"
 #include "pipeline/run_tally.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/steps.hpp"
@@ -283,12 +284,7 @@ void Stream::require_material() const {
                       std::to_string(bad.size()) + ", of which the last: " + bad.back().reason,
                       "at least one frame that can be used",
                       {}});
-  if (!tally_.has_material())
-    throw InputError({{source_.frames()[wanted_[schedule_.windows.back().frames.first]].file, 0},
-                      "no material in any of the frames",
-                      {},
-                      "at least one particle that select keeps",
-                      "Check select and frames"});
+  if (!tally_.has_material()) refuse_no_material(pipeline_, source_, wanted_);
 }
 
 DerivedFields Stream::derive() {

@@ -7,6 +7,7 @@
 
 #include "measure/grains.hpp"
 #include "pipeline/material.hpp"
+#include "pipeline/no_material.hpp"
 #include "pipeline/unless_bad.hpp"
 
 namespace grainvdb {
@@ -70,11 +71,7 @@ double mean_diameter_of(const Pipeline& pipeline, FrameSource& source) {
     const std::vector<double>& radius = frame->particles.radius;
     if (!radius.empty()) return mean_diameter(radius);
   }
-  throw InputError({{source.frames()[frames.at(0)].file, 0},
-                    "tracers are compared in mean diameters, and no frame has material",
-                    {},
-                    "a frame that can be used, with particles that select leaves",
-                    {}});
+  refuse_no_material(pipeline, source, frames);
 }
 
 }  // namespace grainvdb
