@@ -185,10 +185,8 @@ TEST_F(SkippedFrames, EndTheRunUnlessAskedFor) {
 TEST_F(SkippedFrames, EndTheRunInALaterPass) {
   Pipeline p = skipping({"phi"});
   p.input.on_error = OnError::error;
-  p.window = 1;
-  measure_by_default(p, "coordination");
-  p.measure["coordination"]["contacts"] = std::string("dump");
-  FaultySource faulty(frames_, {{60, Column::contacts}});
+  measure_by_default(p, "plane_profile");
+  FaultySource faulty(frames_, {{60, Column::mass}});
   for (int n = 0; n < 20; ++n) EXPECT_THROW(run(p, faulty), InputError);
 }
 
