@@ -335,6 +335,7 @@ void Stream::save_progress() {
 }
 
 void Stream::save(ByteWriter& to) const {
+  to.number(std::uint64_t{frames_there_});
   to.number(std::uint64_t{now_.frames_done});
   to.number(std::uint64_t{outputs_});
   // Where further frames may come, an end that is only that of the input is none.
@@ -345,8 +346,12 @@ void Stream::save(ByteWriter& to) const {
   tally_.save(to);
 }
 
+/// Of another number of frames only what is certain counts; where more was done, the run begins anew.
 void Stream::load(ByteReader& from) {
-  now_.frames_done = from.count();
+  const std::size_t frames = from.count(), done = from.count();
+  if (frames != frames_there_ && done > certain_visits(time_windows(pipeline_, plan_), frames, plan_.sweeps.size()))
+    return;
+  now_.frames_done = done;
   outputs_ = from.count();
   if (const std::size_t end = from.count(); end < frames_there_) end_at(end);
   const std::vector<std::int64_t> steps = from.numbers<std::int64_t>();
