@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "plain_spots.hpp"
+#include "spot/published_spots.hpp"
 #include "spot/random_packing.hpp"
 
 namespace grainvdb::bench {
@@ -55,16 +56,8 @@ SpotScene make_silo(const Sizes& sizes, bool relaxed) {
   SpotScene scene;
   scene.packing = spot::random_packing(box, phi, 1, 1);
   scene.container = {box, spot::Orifice{spot::Orifice::Shape::slot, {0, 0}, 8}};
-  spot::SpotParameters& p = scene.parameters;
-  p.radius = 2.6;
-  p.influence = 399;
-  p.step = {0.676, 0.676, 0.1};
-  p.hop_rate = 28;
-  p.insertion_rate = 375;
-  p.entry = spot::SpotParameters::Entry::spread;
-  p.wall_distance = 1;
-  p.relaxation.every = relaxed ? 1 : 0;
-  p.relaxation.radius = 3.6;
+  scene.parameters = spot::published_spots();
+  if (!relaxed) scene.parameters.relaxation.every = 0;
   return scene;
 }
 

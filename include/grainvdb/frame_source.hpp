@@ -74,7 +74,7 @@ struct FrameInfo {
 struct BadFrame {
   std::string file;
   std::optional<std::int64_t> step;  ///< nothing where not even that can be read: the rest of the file
-  std::string reason;
+  std::string reason;                ///< what is wrong with it; several faults with "; " between them
 };
 
 /// "step 300: reason"; the reason alone, which names the file, where the step is not known.

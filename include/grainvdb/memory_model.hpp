@@ -14,7 +14,7 @@ struct RunSize {
   double particles = 0;  ///< of the largest frame, those that count as material
   double contacts = 0;   ///< of the largest frame
   double images = 1;     ///< periodic images per particle: ∏ (1 + 2c/L) over the periodic axes
-  double voxels = 0;     ///< of all leaves that are summed: active ones, and the others of their leaves
+  double voxels = 0;     ///< of all leaves that are summed: active ones, and the others of their leaves; 64 a plane
   double tracers = 0;
 };
 
@@ -44,8 +44,9 @@ struct MemoryModel {
 /// What is read ahead: limits.frames_in_flight, or else one more than there are threads, 8 at most.
 std::size_t frames_in_flight(const Limits& limits);
 
-/// RunSize::images: an image of a particle is within reach of the box where it is within one cutoff of it.
-double images_per_particle(const Lattice& lattice, double cutoff);
+/// RunSize::images: an image of a particle is within reach of the box where it is within one cutoff of it. Over planes
+/// that counts along their normal alone.
+double images_per_particle(const Lattice& lattice, const Pipeline& pipeline);
 
 MemoryModel memory_model(const Plan& plan, const Pipeline& pipeline);
 

@@ -130,7 +130,8 @@ struct CheckpointOptions {
 /// is at work in it.
 ///
 /// Without tracer sinks nothing is traced; without field sinks no field is written, and the checkpoint is used only
-/// where measurements are made of fields. The tables of the measurements are in the report.
+/// where measurements are made of fields or of averages over planes. What is measured of single frames begins anew. The
+/// tables of the measurements are in the report.
 RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& source,
                        const std::vector<std::unique_ptr<FieldSink>>& sinks,
                        const std::vector<std::unique_ptr<TracerSink>>& tracer_sinks,

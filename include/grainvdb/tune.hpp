@@ -95,11 +95,25 @@ std::vector<Knob> default_knobs(const Pipeline& pipeline, const Plan& plan, Fram
 /// needed; and what running the pipeline throws.
 TuneReport tune(const TuneRequest& request, FrameSource& source);
 
+/// What `tune` would do.
+struct TunePlan {
+  std::size_t runs = 0;                ///< of the pipeline at most, repeats and combinations included
+  std::vector<std::string> reference;  ///< as in TuneReport, as are the next two
+  std::vector<std::string> fields;
+  std::vector<std::string> not_compared;
+  std::vector<Trial> settings;  ///< that would be tried by themselves, with why those are refused that are none
+};
+
+/// Makes the checks that `tune` makes before its first run. Throws as it does.
+TunePlan plan_tuning(const TuneRequest& request, FrameSource& source);
+
 /// The largest ratio of an error to its tolerance; without tolerances the largest error. Infinite when refused.
 double score(const Trial& trial, const std::map<std::string, double>& tolerance);
 
 /// The report as a table and a proposal, as `grainvdb tune` prints it.
 std::string describe(const TuneReport& report, const std::map<std::string, double>& tolerance);
+/// The plan in words.
+std::string describe(const TunePlan& plan);
 /// One row per setting and field.
 std::string to_csv(const TuneReport& report, const std::map<std::string, double>& tolerance);
 

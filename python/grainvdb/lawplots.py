@@ -82,7 +82,8 @@ def _law(ax: Axes, x: Array, y: Array, style: str, colour: str, text: str) -> No
 def _dress(ax: Axes, panel: Panel, x: Array) -> None:
     decades = panel.x == "inertial_number" and 0 < 10 * x.min() < x.max()
     ax.set(xlabel=panel.x_label, ylabel=panel.y_label, xscale="log" if decades else "linear")
-    ax.legend(fontsize="small")
+    # Where there is room inside matplotlib tells from the points alone, and would cover error bars.
+    ax.legend(fontsize="small", loc="lower center", bbox_to_anchor=(0.5, 1), ncols=2, frameon=False)
     ax.grid(alpha=0.3)
 
 

@@ -6,6 +6,7 @@
 #include "base/listed.hpp"
 #include "pipeline/number.hpp"
 #include "pipeline/text.hpp"
+#include "read/contact_columns.hpp"
 
 namespace grainvdb::cli {
 namespace {
@@ -44,23 +45,11 @@ std::string corner(const Vec3& x) {
   return '[' + print_number(x[0]) + ", " + print_number(x[1]) + ", " + print_number(x[2]) + ']';
 }
 
-// Of columns such as c_pp[2], each once, in their order.
-std::vector<std::string> names_of_computes(const std::vector<std::string>& columns) {
-  std::vector<std::string> names;
-  for (const std::string& column : columns) {
-    const std::size_t bracket = column.find('[');
-    if (!column.starts_with("c_") || bracket == std::string::npos) continue;
-    const std::string name = column.substr(2, bracket - 2);
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  }
-  return names;
-}
-
 // LAMMPS takes ids and forces of two computes, LIGGGHTS all of one.
 std::string computes_of_contacts(const std::vector<std::string>& columns) {
-  const std::vector<std::string> names = names_of_computes(columns);
-  if (names.size() != 2) return "compute: [pos, id, force, contactPoint, delta]";
-  return "lammps: {ids: " + names[0] + ", forces: " + names[1] +
+  const std::vector<ComputeUse> computes = computes_among(columns);
+  if (computes.size() != 2) return "compute: [pos, id, force, contactPoint, delta]";
+  return "lammps: {ids: " + computes[0].name + ", forces: " + computes[1].name +
          "}   # of property/local patom1 patom2, and pair/local fx fy fz p1 p2 p3";
 }
 

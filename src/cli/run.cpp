@@ -13,14 +13,12 @@
 
 #include "cli/commands.hpp"
 #include "cli/dry_run.hpp"
-#include "cli/error_json.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/open_input.hpp"
 #include "cli/output_folder.hpp"
-#include "cli/progress_json.hpp"
-#include "cli/progress_line.hpp"
 #include "cli/report.hpp"
+#include "cli/reporting.hpp"
 #include "cli/run_record.hpp"
 #include "cli/write_tables.hpp"
 #include "grainvdb/follow.hpp"
@@ -65,10 +63,8 @@ struct RunOptions {
   double checkpoint_interval = CheckpointOptions{}.interval;
   bool follow = false;
   FollowOptions waiting;
-  std::string progress_file;
-  bool log_json = false;
   bool dry_run = false;
-  bool quiet = false;
+  Reporting reporting;
 };
 
 template <class Sink, class Registry>
@@ -93,35 +89,14 @@ ScaleRun make_run(Pipeline pipeline, const std::string& folder) {
   return run;
 }
 
-std::vector<std::unique_ptr<ProgressView>> progress_views(const RunOptions& options) {
-  std::vector<std::unique_ptr<ProgressView>> views;
-  if (!options.progress_file.empty()) views.push_back(std::make_unique<ProgressFile>(options.progress_file));
-  if (options.log_json) {
-    views.push_back(std::make_unique<ProgressLog>());
-  } else if (!options.quiet) {
-    views.push_back(std::make_unique<ProgressLine>(stderr));
-  }
-  return views;
-}
-
-void warn(const RunOptions& options, const std::string& warnings) {
-  if (options.log_json)
-    log_warnings(warnings);
-  else
-    std::cerr << warnings;
-}
-
 /// work(show) on as many threads as are wanted; show(progress) is for it to call again and again.
 template <class F>
 auto with_progress(const RunOptions& options, F work) {
   std::optional<tbb::global_control> threads;
   if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
   watch_for_interrupts();
-  const auto views = progress_views(options);
-  return work([&](const Progress& progress) {
-    check_for_interrupt();
-    for (const auto& view : views) view->show(progress);
-  });
+  const ProgressViews views(options.reporting);
+  return work([&](const Progress& progress) { views.show(progress); });
 }
 
 void run_once(const Pipeline& pipeline, const RunOptions& options) {
@@ -138,8 +113,8 @@ void run_once(const Pipeline& pipeline, const RunOptions& options) {
   });
   write_tables(report, options.output);
   write_run_record(report, options.output);
-  warn(options, warnings(report));
-  if (!options.quiet) std::cout << describe(report);
+  warn(options.reporting, warnings(report));
+  if (!options.reporting.quiet) std::cout << describe(report);
 }
 
 std::string folder_of_scale(const std::string& output, const Pipeline& pipeline) {
@@ -174,8 +149,8 @@ void run_at_scales(const Pipeline& pipeline, const RunOptions& options) {
     write_tables(reports[n], folder);
     write_run_record(reports[n], folder);
   }
-  warn(options, warnings(reports, names));
-  if (options.quiet) return;
+  warn(options.reporting, warnings(reports, names));
+  if (options.reporting.quiet) return;
   for (std::size_t n = 0; n < runs.size(); ++n) std::cout << names[n] << '\n' << describe(reports[n]);
 }
 
@@ -230,18 +205,6 @@ void measure(const RunOptions& options) {
   run(pipeline, options);
 }
 
-/// Errors are events, too, where events are logged.
-template <class F>
-void with_errors_logged(const RunOptions& options, F work) {
-  if (!options.log_json) return work(options);
-  try {
-    work(options);
-  } catch (const Error& error) {
-    log_event("error", error_json(error));
-    throw CLI::RuntimeError(error.exit_code());
-  }
-}
-
 void add_options(CLI::App& command, RunOptions& options) {
   add_pipeline_arguments(command, options.pipeline);
   command.add_option("-o,--output", options.output, "Folder for the results; made where there is none")
@@ -252,14 +215,13 @@ void add_options(CLI::App& command, RunOptions& options) {
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
   command
-      .add_option("--progress-file", options.progress_file,
+      .add_option("--progress-file", options.reporting.progress_file,
                   "Keep how far the run is in this file, as JSON, for batch systems")
       ->type_name("FILE");
-  command.add_flag("--log-json", options.log_json,
-                   "Write progress, warnings and errors as JSON, an object a line, to the standard error");
+  add_log_option(command, options.reporting);
   command.add_flag("--dry-run", options.dry_run,
                    "Check everything, compute one frame and estimate what all would take; write nothing");
-  command.add_flag("-q,--quiet", options.quiet, "Print nothing but errors and warnings");
+  command.add_flag("-q,--quiet", options.reporting.quiet, "Print nothing but errors and warnings");
 }
 
 }  // namespace
@@ -299,7 +261,7 @@ void add_run(CLI::App& app) {
       ->needs(follow)
       ->capture_default_str();
   command->footer(run_footer);
-  command->callback([options] { with_errors_logged(*options, run_or_follow); });
+  command->callback([options] { with_errors_logged(options->reporting, [&] { run_or_follow(*options); }); });
 }
 
 void add_trace(CLI::App& app) {
@@ -307,7 +269,7 @@ void add_trace(CLI::App& app) {
   const auto options = std::make_shared<RunOptions>();
   add_options(*command, *options);
   command->footer(trace_footer);
-  command->callback([options] { with_errors_logged(*options, trace); });
+  command->callback([options] { with_errors_logged(options->reporting, [&] { trace(*options); }); });
 }
 
 void add_measure(CLI::App& app) {
@@ -315,7 +277,7 @@ void add_measure(CLI::App& app) {
   const auto options = std::make_shared<RunOptions>();
   add_options(*command, *options);
   command->footer(measure_footer);
-  command->callback([options] { with_errors_logged(*options, measure); });
+  command->callback([options] { with_errors_logged(options->reporting, [&] { measure(*options); }); });
 }
 
 }  // namespace grainvdb::cli

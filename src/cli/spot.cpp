@@ -4,7 +4,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/output_folder.hpp"
-#include "cli/progress_line.hpp"
+#include "cli/reporting.hpp"
 #include "cli/spot_commands.hpp"
 #include "spot/run_spot.hpp"
 
@@ -22,7 +22,8 @@ done. The same file and seed give the same dumps.)";
 struct SpotRunOptions {
   PipelineArguments file;
   std::string output = "spot";
-  bool quiet = false;
+  bool dry_run = false;
+  Reporting reporting;
 };
 
 void print(const spot::SpotRun& run, const spot::SpotReport& report, const std::string& folder) {
@@ -39,19 +40,26 @@ void print(const spot::SpotRun& run, const spot::SpotReport& report, const std::
     std::cout << " steps, " << c.relaxed << " of them relaxed\n";
 }
 
-void run(const SpotRunOptions& options) {
+void print_dry(const spot::SpotRun& run) {
+  std::cout << run.resolved << "\nwould begin with " << run.packing.id.size() << " particles";
+  if (run.left_out > 0) std::cout << " (" << run.left_out << " of the dump lie outside the container)";
+  std::cout << " and write at most " << spot::most_snapshots(run) << " snapshots until time " << run.end << '\n';
+}
+
+void run_spots(const SpotRunOptions& options) {
   check_output_folder(options.output);
+  spot::refuse_used_folder(options.output);
   const spot::SpotRun run = spot::load_spot_run(options.file.file, options.file.overrides);
+  if (options.dry_run) return print_dry(run);
   watch_for_interrupts();
   spot::SpotReport report;
   {
-    ProgressLine line(stderr);
+    const ProgressViews views(options.reporting);
     report = spot::run_spot(run, options.output, [&](std::size_t done, std::size_t all) {
-      check_for_interrupt();
-      if (!options.quiet) line.show({done, all, "snapshots"});
+      views.show({done, all, "snapshots"});
     });
   }
-  if (!options.quiet) print(run, report, options.output);
+  if (!options.reporting.quiet) print(run, report, options.output);
 }
 
 void add_run_subcommand(CLI::App& spot) {
@@ -62,9 +70,12 @@ void add_run_subcommand(CLI::App& spot) {
   command->add_option("-o,--output", options->output, "Folder for the dumps; made where there is none")
       ->type_name("DIR")
       ->capture_default_str();
-  command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
+  add_log_option(*command, options->reporting);
+  command->add_flag("--dry-run", options->dry_run,
+                    "Check the file and its packing, print all its keys and say what would be run; write nothing");
+  command->add_flag("-q,--quiet", options->reporting.quiet, "Print nothing but errors");
   command->footer(spot_run_footer);
-  command->callback([options] { run(*options); });
+  command->callback([options] { with_errors_logged(options->reporting, [&] { run_spots(*options); }); });
 }
 
 }  // namespace

@@ -9,11 +9,12 @@
 #include <tbb/global_control.h>
 
 #include "cli/commands.hpp"
+#include "cli/dry_run.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/open_input.hpp"
 #include "cli/output_folder.hpp"
-#include "cli/progress_line.hpp"
 #include "cli/report.hpp"
+#include "cli/reporting.hpp"
 #include "cli/run_record.hpp"
 #include "cli/spot_commands.hpp"
 #include "cli/write_tables.hpp"
@@ -47,7 +48,8 @@ struct SpotCalibrateOptions {
   bool by_comparison = false;
   spot::ComparisonOptions comparison;
   std::size_t threads = 0;
-  bool quiet = false;
+  bool dry_run = false;
+  Reporting reporting;
 };
 
 Pipeline calibration_alone(const SpotCalibrateOptions& options) {
@@ -60,13 +62,9 @@ Pipeline calibration_alone(const SpotCalibrateOptions& options) {
   return pipeline;
 }
 
-RunReport measured(const Pipeline& pipeline, const Plan& plan, FrameSource& source, bool quiet) {
-  watch_for_interrupts();
-  ProgressLine line(stderr);
-  return run_pipeline(pipeline, plan, source, {}, [&](const Progress& progress) {
-    check_for_interrupt();
-    if (!quiet) line.show(progress);
-  });
+RunReport measured(const Pipeline& pipeline, const Plan& plan, FrameSource& source, const Reporting& reporting) {
+  const ProgressViews views(reporting);
+  return run_pipeline(pipeline, plan, source, {}, [&](const Progress& progress) { views.show(progress); });
 }
 
 void print_parameters(const RunReport& report) {
@@ -79,13 +77,19 @@ void print_parameters(const RunReport& report) {
 
 /// Puts the corrected parameters first.
 void compare(const SpotCalibrateOptions& options, const Pipeline& pipeline, FrameSource& source, RunReport& report) {
-  ProgressLine line(stderr);
+  const ProgressViews views(options.reporting);
   Table corrected = spot::calibrate_by_comparison(pipeline, report.tables.front(), source, options.comparison,
                                                   options.output, [&](std::size_t done, std::size_t all) {
-                                                    check_for_interrupt();
-                                                    if (!options.quiet) line.show({done, all, "comparison runs"});
+                                                    views.show({done, all, "comparison runs"});
                                                   });
   report.tables.insert(report.tables.begin(), std::move(corrected));
+}
+
+void calibrate_dry(const SpotCalibrateOptions& options, const Pipeline& pipeline, const Plan& plan) {
+  std::cout << describe(plan, pipeline) << '\n' << estimate(pipeline, plan, *open_input(pipeline, plan));
+  if (options.by_comparison)
+    std::cout << "would make at most " << options.comparison.rounds << " x " << options.comparison.runs
+              << " runs of the spot file for comparison\n";
 }
 
 void calibrate(const SpotCalibrateOptions& options) {
@@ -93,21 +97,23 @@ void calibrate(const SpotCalibrateOptions& options) {
   if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
   const Pipeline pipeline = calibration_alone(options);
   const Plan plan = make_plan(pipeline);
+  if (options.dry_run) return calibrate_dry(options, pipeline, plan);
   check_output_folder(options.output);
   const auto source = open_input(pipeline, plan);
-  RunReport report = measured(pipeline, plan, *source, options.quiet);
+  watch_for_interrupts();
+  RunReport report = measured(pipeline, plan, *source, options.reporting);
   write_tables(report, options.output);
   if (options.by_comparison) {
     compare(options, pipeline, *source, report);
     write_tables(report, options.output);
   }
   write_run_record(report, options.output);
-  std::cerr << warnings(report);
-  if (!options.quiet) print_parameters(report);
+  warn(options.reporting, warnings(report));
+  if (!options.reporting.quiet) print_parameters(report);
   const std::string file = (std::filesystem::path(options.output) / "spot.yaml").string();
   write_text_file(file, spot::calibrated_spot_file(pipeline, report.tables.front(), *source));
   spot::load_spot_run(file);  // whether it can be run
-  if (!options.quiet) std::cout << "wrote " << file << "\nrun it:\n  grainvdb spot run " << file << '\n';
+  if (!options.reporting.quiet) std::cout << "wrote " << file << "\nrun it:\n  grainvdb spot run " << file << '\n';
 }
 
 void add_comparison_options(CLI::App& command, SpotCalibrateOptions& options) {
@@ -149,9 +155,11 @@ void add_spot_calibrate(CLI::App& spot) {
   command->add_option("--threads", options->threads, "Threads to use; all processors by default")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
-  command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors and warnings");
+  add_log_option(*command, options->reporting);
+  command->add_flag("--dry-run", options->dry_run, "Check everything and say what would be measured; write nothing");
+  command->add_flag("-q,--quiet", options->reporting.quiet, "Print nothing but errors and warnings");
   command->footer(spot_calibrate_footer);
-  command->callback([options] { calibrate(*options); });
+  command->callback([options] { with_errors_logged(options->reporting, [&] { calibrate(*options); }); });
 }
 
 }  // namespace grainvdb::cli

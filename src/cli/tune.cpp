@@ -11,11 +11,12 @@
 #include <tbb/global_control.h>
 
 #include "cli/commands.hpp"
+#include "cli/dry_run.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/open_input.hpp"
 #include "cli/output_folder.hpp"
-#include "cli/progress_line.hpp"
 #include "cli/python.hpp"
+#include "cli/reporting.hpp"
 #include "pipeline/number.hpp"
 #include "pipeline/text.hpp"
 #include "write/text_file.hpp"
@@ -44,8 +45,9 @@ struct TuneOptions {
   std::size_t threads = 1;
   std::size_t most_runs = 120;
   std::string output = "tune";
-  bool quiet = false;
+  bool dry_run = false;
   bool no_picture = false;
+  Reporting reporting;
 };
 
 ConfigError bad_option(const char* option, const std::string& what, const std::string& found, const std::string& hint) {
@@ -120,8 +122,7 @@ std::vector<Knob> chosen_knobs(const TuneOptions& options, std::vector<Knob> kno
   return knobs;
 }
 
-void tune_pipeline(const TuneOptions& options) {
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, options.threads);
+TuneRequest request_of(const TuneOptions& options) {
   TuneRequest request;
   request.file = options.pipeline.file;
   request.overrides = options.pipeline.settings();
@@ -129,42 +130,59 @@ void tune_pipeline(const TuneOptions& options) {
   request.tolerance = tolerances(options.tolerance);
   request.repeats = options.repeats;
   request.most_runs = options.most_runs;
-  const Pipeline pipeline = load_pipeline(request.file, request.overrides);
+  return request;
+}
+
+Pipeline at_one_scale(const TuneRequest& request) {
+  Pipeline pipeline = load_pipeline(request.file, request.overrides);
   if (!pipeline.scales.empty())
     throw ConfigError({pipeline.location("scales"), "settings are compared at one scale",
                        std::to_string(pipeline.scales.size()) + " scales", "a pipeline file without scales",
                        "Cutoffs and voxels are tried by --try kernel.cutoff=A,B and --try lattice.voxel=A,B."});
-  const Plan plan = make_plan(pipeline);
-  check_output_folder(options.output);
-  const auto source = open_input(pipeline, plan);
-  request.knobs = chosen_knobs(options, default_knobs(pipeline, plan, *source));
+  return pipeline;
+}
 
+TuneReport run_all(TuneRequest& request, FrameSource& source, const Reporting& reporting) {
   watch_for_interrupts();
-  TuneReport report;
-  {
-    std::optional<ProgressLine> line;
-    request.progress = [&](const TuneRequest::Step& step) {
-      check_for_interrupt();
-      if (step.frames_total == 0) line.emplace(stderr);  // a run begins, and its time
-      const std::string doing =
-          "run " + std::to_string(step.run + 1) + " of at most " + std::to_string(step.runs) + ", " + step.what;
-      if (!options.quiet) line->show({step.frames, step.frames_total, doing});
-    };
-    report = tune(request, *source);
-  }
-  const std::string table = (std::filesystem::path(options.output) / "tune.csv").string();
-  write_text_file(table, to_csv(report, request.tolerance));
-  if (!options.quiet)
-    std::cout << describe(report, request.tolerance) << "Best of " << options.repeats
-              << (options.repeats == 1 ? " run on " : " runs on ") << options.threads
-              << (options.threads == 1 ? " thread" : " threads") << ".\nwrote " << table << '\n';
-  if (options.no_picture) return;
+  std::optional<ProgressViews> views;
+  request.progress = [&](const TuneRequest::Step& step) {
+    if (step.frames_total == 0) views.emplace(reporting);  // a run begins, and its time
+    views->show(
+        {step.frames, step.frames_total,
+         "run " + std::to_string(step.run + 1) + " of at most " + std::to_string(step.runs) + ", " + step.what});
+  };
+  return tune(request, source);
+}
+
+void draw(const TuneOptions& options, const std::string& table) {
   try {
     become_python("grainvdb.tune", {table, (std::filesystem::path(options.output) / "tune.png").string()},
                   {"h5py", "matplotlib"});
   } catch (const IoError& error) {
-    std::cerr << "grainvdb: no picture was drawn: " << error.what() << '\n';
+    warn(options.reporting, std::string("grainvdb: warning: no picture was drawn: ") + error.what() + '\n');
   }
+}
+
+void tune_pipeline(const TuneOptions& options) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, options.threads);
+  TuneRequest request = request_of(options);
+  const Pipeline pipeline = at_one_scale(request);
+  const Plan plan = make_plan(pipeline);
+  check_output_folder(options.output);
+  const auto source = open_input(pipeline, plan);
+  request.knobs = chosen_knobs(options, default_knobs(pipeline, plan, *source));
+  if (options.dry_run) {
+    std::cout << describe(plan_tuning(request, *source)) << "as it is:\n" << estimate(pipeline, plan, *source);
+    return;
+  }
+  const TuneReport report = run_all(request, *source, options.reporting);
+  const std::string table = (std::filesystem::path(options.output) / "tune.csv").string();
+  write_text_file(table, to_csv(report, request.tolerance));
+  if (!options.reporting.quiet)
+    std::cout << describe(report, request.tolerance) << "Best of " << options.repeats
+              << (options.repeats == 1 ? " run on " : " runs on ") << options.threads
+              << (options.threads == 1 ? " thread" : " threads") << ".\nwrote " << table << '\n';
+  if (!options.no_picture) draw(options, table);
 }
 
 }  // namespace
@@ -176,7 +194,8 @@ void add_tune(CLI::App& app) {
   add_frames_option(*command, options->pipeline);
   command
       ->add_option("--tolerance", options->tolerance,
-                   "Largest relative error of a field, profile.FIELD or position; the fastest setting that keeps to all of them is "
+                   "Largest relative error of a field, profile.FIELD or position; the fastest setting that keeps to "
+                   "all of them is "
                    "proposed")
       ->type_name("FIELD=X,...")
       ->delimiter(',');
@@ -208,9 +227,12 @@ void add_tune(CLI::App& app) {
       ->type_name("DIR")
       ->capture_default_str();
   command->add_flag("--no-picture", options->no_picture, "Draw nothing");
-  command->add_flag("-q,--quiet", options->quiet, "Print nothing but errors");
+  add_log_option(*command, options->reporting);
+  command->add_flag("--dry-run", options->dry_run,
+                    "Check everything, list what would be tried and estimate one run; write nothing");
+  command->add_flag("-q,--quiet", options->reporting.quiet, "Print nothing but errors and warnings");
   command->footer(tune_footer);
-  command->callback([options] { tune_pipeline(*options); });
+  command->callback([options] { with_errors_logged(options->reporting, [&] { tune_pipeline(*options); }); });
 }
 
 }  // namespace grainvdb::cli

@@ -18,14 +18,24 @@ bool with_spin(const OptionValues& options) {
   return std::get<bool>(options.at("spin"));
 }
 
-StateQuantities quantities(bool spin) {
-  return [spin](const FlowState& state, std::span<double> out) {
-    out[gd_over_dv] = state.gd_over_dv();
-    out[packing_fraction] = state.phi;
-    if (!spin) return;
-    out[dv_over_d_domega] = state.dv_over_d_domega();
-    out[g_over_domega] = state.g_over_domega();
-  };
+void fluidity_of(const FlowState& state, std::span<double> out) {
+  out[gd_over_dv] = state.gd_over_dv();
+  out[packing_fraction] = state.phi;
+}
+
+void fluidity_and_spin_of(const FlowState& state, std::span<double> out) {
+  fluidity_of(state, out);
+  out[dv_over_d_domega] = state.dv_over_d_domega();
+  out[g_over_domega] = state.g_over_domega();
+}
+
+std::vector<std::string> fluidity_fields(const OptionValues& options) {
+  return with_spin(options) ? sample_fields(options, {"rotational_fluctuation"}) : sample_fields(options);
+}
+
+std::unique_ptr<StateSamples> fluidity_samples(const MeasurementSetting& setting) {
+  return with_spin(setting.options) ? make_samples(setting, fluidity_fields(setting.options), 4, &fluidity_and_spin_of)
+                                    : make_samples(setting, fluidity_fields(setting.options), 2, &fluidity_of);
 }
 
 const std::string published_law = "zhang_kamrin";
@@ -50,7 +60,7 @@ class FluidityMeasurement : public Measurement {
         error_floor_(number_option(setting.options, "error_floor")),
         compare_(std::get<std::string>(setting.options.at("compare"))),
         c_(held_c(number_option(setting.options, "c"), compare_)),
-        samples_(make_samples(setting, spin_, spin_ ? 4 : 2, quantities(spin_))) {}
+        samples_(fluidity_samples(setting)) {}
 
   void take(const OutputFields& output) override { samples_->take(output); }
 
@@ -199,9 +209,7 @@ MeasurementInfo fluidity_fit() {
       return OptionConflict{"spin", "true with a species", "false: spin fluctuations are those of all grains"};
     return sample_conflict(values);
   };
-  info.needs = [](const OptionValues& values) {
-    return sample_needs(values, sample_fields(values, with_spin(values)));
-  };
+  info.needs = [](const OptionValues& values) { return sample_needs(values, fluidity_fields(values)); };
   info.make = [](const MeasurementSetting& setting) { return std::make_unique<FluidityMeasurement>(setting); };
   return info;
 }

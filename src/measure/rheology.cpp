@@ -78,7 +78,7 @@ class RheologyMeasurement : public Measurement {
         error_floor_(number_option(setting.options, "error_floor")),
         skt_most_(number_option(setting.options, "skt_phi_max")),
         bounds_{number_option(setting.options, "quasi_static_below"), number_option(setting.options, "inertial_above")},
-        samples_(make_samples(setting, false, quantity_count,
+        samples_(make_samples(setting, sample_fields(setting.options), quantity_count,
                               quantities(stiffness_, number_option(setting.options, "restitution"), skt_most_))) {}
 
   void take(const OutputFields& output) override { samples_->take(output); }
@@ -277,7 +277,7 @@ MeasurementInfo rheology() {
   info.equation = "mu(I) = mu_0 + (mu_infinity-mu_0)/(I_0/I+1)";
   info.options = options();
   info.conflict = conflict;
-  info.needs = [](const OptionValues& values) { return sample_needs(values, sample_fields(values, false)); };
+  info.needs = [](const OptionValues& values) { return sample_needs(values, sample_fields(values)); };
   info.make = [](const MeasurementSetting& setting) { return std::make_unique<RheologyMeasurement>(setting); };
   return info;
 }

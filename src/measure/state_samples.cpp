@@ -168,25 +168,25 @@ PlaneNeeds plane_needs(const OptionValues& options, std::vector<std::string> fie
   return {{axis_option(options, "axis"), number_option(options, "area")}, std::move(fields)};
 }
 
-std::vector<std::string> sample_fields(const OptionValues& options, bool spin) {
+std::vector<std::string> sample_fields(const OptionValues& options, const std::vector<std::string>& more) {
   const StateFields of_state(options);
   std::vector<std::string> fields;
   for (const std::string& field : flow_fields()) fields.push_back(of_state(field));
   if (of_state.are_of_species()) fields.push_back(volume_weight(of_state("temperature")));
-  if (spin) fields.push_back("rotational_fluctuation");
+  fields.insert(fields.end(), more.begin(), more.end());
   return fields;
 }
 
-std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, bool spin, std::size_t quantities,
-                                           StateQuantities f) {
+std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, std::vector<std::string> fields,
+                                           std::size_t quantities, StateQuantities f) {
   const TemperatureFloor floor{option<double>(setting.stages, "gd_over_dv", "temperature_min"),
                                option<double>(setting.stages, "velocity", "resolution")};
   const BinSpec spec = bin_spec(setting.options);
-  const StateFields fields(setting.options);
+  const StateFields of_state(setting.options);
   if (std::get<std::string>(setting.options.at("source")) == "voxels")
-    return std::make_unique<VoxelSamples>(spec, setting.lattice, fields, floor, quantities, std::move(f));
-  return std::make_unique<ProfileSamples>(FieldProfile(spec, setting.lattice, sample_fields(setting.options, spin)),
-                                          fields, floor, quantities, std::move(f));
+    return std::make_unique<VoxelSamples>(spec, setting.lattice, of_state, floor, quantities, std::move(f));
+  return std::make_unique<ProfileSamples>(FieldProfile(spec, setting.lattice, std::move(fields)), of_state, floor,
+                                          quantities, std::move(f));
 }
 
 std::vector<double> fit_errors(const std::vector<StateSample>& samples, std::size_t index, double floor) {

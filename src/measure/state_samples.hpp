@@ -48,13 +48,13 @@ MeasurementNeeds sample_needs(const OptionValues& options, std::vector<std::stri
 OptionInfo plane_area_option();
 PlaneNeeds plane_needs(const OptionValues& options, std::vector<std::string> fields);
 
-/// The fields that samples by these options are made of; with rotational_fluctuation where `spin` is set.
-std::vector<std::string> sample_fields(const OptionValues& options, bool spin);
+/// The fields that samples by these options are made of, and more of all grains.
+std::vector<std::string> sample_fields(const OptionValues& options, const std::vector<std::string>& more = {});
 
-/// Samples as the options say, of sample_fields. Ratios are not formed where the fields of a voxel would not be: up to
-/// pressure_floor, and up to gd_over_dv.temperature_min or the resolution of velocities.
-std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, bool spin, std::size_t quantities,
-                                           StateQuantities f);
+/// Samples as the options say, of these fields: sample_fields. Ratios are not formed where the fields of a voxel would
+/// not be: up to pressure_floor, and up to gd_over_dv.temperature_min or the resolution of velocities.
+std::unique_ptr<StateSamples> make_samples(const MeasurementSetting& setting, std::vector<std::string> fields,
+                                           std::size_t quantities, StateQuantities f);
 
 /// The errors to weigh value `index` of the samples by in a fit, √(s² + (floor y)²); empty, for equal weights, where
 /// any is NaN or 0. The floor keeps an error that came out small by chance from deciding the fit.

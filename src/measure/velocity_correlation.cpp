@@ -3,10 +3,48 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.hpp"
+#include "base/vec3.hpp"
 #include "measure/cell_grid.hpp"
 #include "measure/grains.hpp"
 
 namespace grainvdb {
+namespace {
+
+/// Grains that one thread takes at a time, at the least; each slab has a few such parts at the most, for each has sums
+/// of its own. Sums of parts are added in their order, whoever made them.
+constexpr std::size_t least_part = 512;
+constexpr std::size_t parts_per_slab = 4;
+
+struct SlabPart {
+  std::size_t slab = 0;
+  std::vector<std::size_t> grains{};
+};
+
+std::vector<SlabPart> parts_of_slabs(const CellGrid& grid, const Slabs& slabs) {
+  std::array<std::vector<std::size_t>, Slabs::count> members;
+  for (std::size_t i = 0; i < grid.size(); ++i) members[slabs.of(grid.position(i))].push_back(i);
+  std::vector<SlabPart> parts;
+  for (std::size_t slab = 0; slab < Slabs::count; ++slab) {
+    const std::vector<std::size_t>& all = members[slab];
+    const std::size_t size = std::max(least_part, (all.size() + parts_per_slab - 1) / parts_per_slab);
+    for (std::size_t begin = 0; begin < all.size(); begin += size) {
+      const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
+      parts.push_back({slab, {first, first + static_cast<std::ptrdiff_t>(std::min(size, all.size() - begin))}});
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+VelocityCorrelation::Sums& VelocityCorrelation::Sums::operator+=(const Sums& more) {
+  product += more.product;
+  first += more.first;
+  second += more.second;
+  pairs += more.pairs;
+  return *this;
+}
 
 VelocityCorrelation::VelocityCorrelation(double reach, std::size_t bins) : reach_(reach), bins_(bins) {
   slabs_.fill(std::vector<Sums>(bins));
@@ -17,21 +55,24 @@ void VelocityCorrelation::add(const Box& box, const Columns3& position, const Co
   if (position[0].empty()) return;
   const CellGrid grid(box, position, reach_);
   const double per_length = static_cast<double>(bins_) / reach_;
-  const auto dot = [](const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
   std::vector<Vec3> u(grid.size());
-  for (std::size_t i = 0; i < u.size(); ++i) u[i] = vector_at(fluctuation, i);
+  std::vector<double> square(grid.size());
   for (std::size_t i = 0; i < u.size(); ++i) {
-    std::vector<Sums>& sums = slabs_[slabs.of(grid.position(i))];
-    const double own = dot(u[i], u[i]);
-    grid.neighbours(i, [&](std::size_t j, const Vec3& r, double r2) {
-      if (!is_nearest_image(box, r)) return;
-      Sums& s = sums[std::min(bins_ - 1, static_cast<std::size_t>(std::sqrt(r2) * per_length))];
-      s.product += dot(u[i], u[j]);
-      s.first += own;
-      s.second += dot(u[j], u[j]);
-      ++s.pairs;
-    });
+    u[i] = vector_at(fluctuation, i);
+    square[i] = dot(u[i], u[i]);
   }
+  const std::vector<SlabPart> parts = parts_of_slabs(grid, slabs);
+  std::vector<std::vector<Sums>> sums(parts.size(), std::vector<Sums>(bins_));
+  parallel_for(parts.size(), [&](std::size_t p) {
+    for (const std::size_t i : parts[p].grains)
+      grid.neighbours(i, [&](std::size_t j, const Vec3& r, double r2) {
+        if (!is_nearest_image(box, r)) return;
+        sums[p][std::min(bins_ - 1, static_cast<std::size_t>(std::sqrt(r2) * per_length))] +=
+            {dot(u[i], u[j]), square[i], square[j], 1};
+      });
+  });
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    for (std::size_t k = 0; k < bins_; ++k) slabs_[parts[p].slab][k] += sums[p][k];
 }
 
 double VelocityCorrelation::middle(std::size_t k) const {
@@ -40,14 +81,8 @@ double VelocityCorrelation::middle(std::size_t k) const {
 
 VelocityCorrelation::Sums VelocityCorrelation::sum(std::size_t k, std::size_t without) const {
   Sums total;
-  for (std::size_t slab = 0; slab < Slabs::count; ++slab) {
-    if (slab == without) continue;
-    const Sums& s = slabs_[slab][k];
-    total.product += s.product;
-    total.first += s.first;
-    total.second += s.second;
-    total.pairs += s.pairs;
-  }
+  for (std::size_t slab = 0; slab < Slabs::count; ++slab)
+    if (slab != without) total += slabs_[slab][k];
   return total;
 }
 

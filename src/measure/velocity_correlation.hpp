@@ -14,7 +14,8 @@ class VelocityCorrelation {
  public:
   VelocityCorrelation(double reach, std::size_t bins);
 
-  /// One frame more: grains with their velocity fluctuations. `slabs` are those of all frames.
+  /// One frame more: grains with their velocity fluctuations. `slabs` are those of all frames. The same bits for any
+  /// number of threads.
   void add(const Box& box, const Columns3& position, const Columns3& fluctuation, const Slabs& slabs);
 
   std::size_t bins() const { return bins_; }
@@ -31,6 +32,8 @@ class VelocityCorrelation {
   struct Sums {
     double product = 0, first = 0, second = 0;
     std::size_t pairs = 0;
+
+    Sums& operator+=(const Sums& more);
   };
   Sums sum(std::size_t k, std::size_t without = Slabs::count) const;
 

@@ -51,22 +51,25 @@ std::string first_difference(const std::string& text, const std::string& other) 
 
 }  // namespace
 
-Checkpoint::Checkpoint(const CheckpointOptions& options, RunKey key)
-    : interval_(options.interval),
-      folder_((fs::path(options.output_folder) / ".grainvdb-checkpoint").string()),
-      key_(std::move(key)) {
+Checkpoint::Checkpoint(double interval, std::string folder, RunKey key)
+    : interval_(interval), folder_(std::move(folder)), key_(std::move(key)) {
   lock();
   try {
     remove_leftovers(folder_);
-    remove_leftovers(options.output_folder);
-    const fs::path tables = fs::path(options.output_folder) / "tables";
-    if (fs::is_directory(tables)) remove_leftovers(tables.string());
     has_state_ = fs::exists(path(state_name));
-    if (has_state_) check_key();
   } catch (...) {
     ::close(lock_);
     throw;
   }
+}
+
+Checkpoint::Checkpoint(const CheckpointOptions& options, RunKey key)
+    : Checkpoint(options.interval, (fs::path(options.output_folder) / ".grainvdb-checkpoint").string(),
+                 std::move(key)) {
+  remove_leftovers(options.output_folder);
+  const fs::path tables = fs::path(options.output_folder) / "tables";
+  if (fs::is_directory(tables)) remove_leftovers(tables.string());
+  if (has_state_) check_key();
 }
 
 Checkpoint::~Checkpoint() {
@@ -137,6 +140,16 @@ void Checkpoint::save_output(std::size_t k, const OutputFields& output) const {
 OutputFields Checkpoint::load_output(std::size_t k, const Lattice& lattice) const {
   CheckedFileReader file(path(output_name(k)));
   return grainvdb::load_output(file, lattice);
+}
+
+std::unique_ptr<Checkpoint> Checkpoint::of_pass(const std::string& name, RunKey key) const {
+  std::unique_ptr<Checkpoint> pass(new Checkpoint(interval_, path(name), std::move(key)));
+  if (!pass->has_state_) return pass;
+  CheckedFileReader file(pass->path(state_name));
+  if (read_key(file) == pass->key_) return pass;
+  remove_file(pass->path(state_name));
+  pass->has_state_ = false;
+  return pass;
 }
 
 void Checkpoint::remove() {

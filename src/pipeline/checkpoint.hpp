@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -41,10 +42,15 @@ class Checkpoint {
   void save_output(std::size_t k, const OutputFields& output) const;
   OutputFields load_output(std::size_t k, const Lattice& lattice) const;
 
+  /// That of a pass which the run makes behind this one, in a folder within: it goes when this one is removed. A state
+  /// that was saved with another key is dropped.
+  std::unique_ptr<Checkpoint> of_pass(const std::string& name, RunKey key) const;
+
   /// Once the results are complete.
   void remove();
 
  private:
+  Checkpoint(double interval, std::string folder, RunKey key);
   std::string path(const std::string& name) const;
   void lock();
   void check_key() const;

@@ -19,6 +19,7 @@
 #include "pipeline/clip_fields.hpp"
 #include "pipeline/derive_errors.hpp"
 #include "pipeline/derive_fields.hpp"
+#include "pipeline/no_material.hpp"
 #include "pipeline/run_tally.hpp"
 #include "pipeline/schedule.hpp"
 #include "pipeline/steps.hpp"
@@ -68,7 +69,7 @@ class Stream {
         schedule_(schedule_windows(time_windows(pipeline, plan), wanted_.size())),
         averager_(pipeline, plan, schedule_, lattice, region),
         walls_(WallTreatment::make(pipeline, plan, lattice, source, wanted_)),
-        tally_(images_per_particle(lattice, pipeline.cutoff)) {}
+        tally_(images_per_particle(lattice, pipeline)) {}
 
   RunReport run();
   /// Only the visits that further frames would not change.
@@ -129,6 +130,7 @@ RunReport Stream::run() {
   last_window_ = schedule_.windows.size() - 1;
   for (std::size_t k = 0; k < outputs_; ++k) take_(checkpoint_->load_output(k, lattice_));
   go_through(std::span(visits).subspan(now_.frames_done));
+  if (checkpoint_ != nullptr) save_progress();  // passes may follow
 
   RunReport report = tally_.report(plan_, pipeline_);
   report.frames = schedule_.frame_count() - bad_.count();
@@ -160,6 +162,7 @@ std::size_t Stream::run_certain() {
 }
 
 void Stream::go_through(std::span<const Visit> visits) {
+  if (visits.empty()) return;
   // What runs in parallel within a step is isolated: a thread that waits for the rest of it does not begin another
   // step.
   const std::size_t in_flight = std::min(frames_in_flight(pipeline_.limits), visits.size());
@@ -281,12 +284,7 @@ void Stream::require_material() const {
                       std::to_string(bad.size()) + ", of which the last: " + bad.back().reason,
                       "at least one frame that can be used",
                       {}});
-  if (!tally_.has_material())
-    throw InputError({{source_.frames()[wanted_[schedule_.windows.back().frames.first]].file, 0},
-                      "no material in any of the frames",
-                      {},
-                      "at least one particle that select keeps",
-                      "Check select and frames"});
+  if (!tally_.has_material()) refuse_no_material(pipeline_, source_, wanted_);
 }
 
 DerivedFields Stream::derive() {
@@ -337,6 +335,7 @@ void Stream::save_progress() {
 }
 
 void Stream::save(ByteWriter& to) const {
+  to.number(std::uint64_t{frames_there_});
   to.number(std::uint64_t{now_.frames_done});
   to.number(std::uint64_t{outputs_});
   // Where further frames may come, an end that is only that of the input is none.
@@ -347,8 +346,12 @@ void Stream::save(ByteWriter& to) const {
   tally_.save(to);
 }
 
+/// Of another number of frames only what is certain counts; where more was done, the run begins anew.
 void Stream::load(ByteReader& from) {
-  now_.frames_done = from.count();
+  const std::size_t frames = from.count(), done = from.count();
+  if (frames != frames_there_ && done > certain_visits(time_windows(pipeline_, plan_), frames, plan_.sweeps.size()))
+    return;
+  now_.frames_done = done;
   outputs_ = from.count();
   if (const std::size_t end = from.count(); end < frames_there_) end_at(end);
   const std::vector<std::int64_t> steps = from.numbers<std::int64_t>();

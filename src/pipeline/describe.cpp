@@ -10,6 +10,7 @@
 #include "grainvdb/units.hpp"
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/number.hpp"
+#include "pipeline/plane_runs.hpp"
 #include "pipeline/species.hpp"
 #include "pipeline/wall_domain.hpp"
 #include "pipeline/wall_schema.hpp"
@@ -149,6 +150,17 @@ std::string planes_text(const PlaneNeeds& needs) {
          joined(needs.fields, "");
 }
 
+/// Of the passes for averages over planes, which come one after another behind that for fields.
+std::string plane_memory_text(const Pipeline& pipeline) {
+  std::string text;
+  for (const PlaneRun& run : plane_runs(pipeline)) {
+    const MemoryModel memory = memory_model(run.plan, run.pipeline);
+    text += "peak memory of averages over planes normal to " + std::string(1, "xyz"[run.pipeline.planes->axis]) + ": " +
+            to_string(memory) + "\n  " + symbols(memory) + ", 64 for each plane\n";
+  }
+  return text;
+}
+
 std::string measure_text(const Pipeline& pipeline) {
   std::string text;
   for (const auto& [name, options] : pipeline.measure) {
@@ -192,6 +204,7 @@ std::string describe(const Plan& plan, const Pipeline& pipeline) {
     const MemoryModel memory = memory_model(plan, pipeline);
     text += "peak memory: " + to_string(memory) + "\n  " + symbols(memory) + '\n';
   }
+  text += plane_memory_text(pipeline);
   text += "written: " + joined(pipeline.fields, "nothing") + " as " + joined(pipeline.formats, "nothing") + '\n';
   if (pipeline.trace) text += trace_text(*pipeline.trace);
   text += measure_text(pipeline);

@@ -19,6 +19,9 @@ class GoodFrames : public FrameSource {
       if (frame.step) bad_.insert(*frame.step);
   }
 
+  /// Whether it is one of those that were known to be bad.
+  bool leaves_out(const BadFrame& frame) const { return frame.step && bad_.contains(*frame.step); }
+
   const std::vector<FrameInfo>& frames() const override { return source_.frames(); }
   const UnitSystem& units() const override { return source_.units(); }
   const std::vector<std::string>& particle_columns() const override { return source_.particle_columns(); }

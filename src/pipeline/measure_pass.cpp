@@ -1,6 +1,7 @@
 #include "pipeline/measure_pass.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "pipeline/measure_needs.hpp"
 #include "pipeline/output_units.hpp"
 #include "pipeline/provenance.hpp"
+#include "pipeline/stream.hpp"
 #include "pipeline/wall_domain.hpp"
 
 namespace grainvdb {
@@ -35,12 +37,17 @@ bool takes_from(const PlaneRun& run, const std::string& measurement) {
   return std::find(run.measurements.begin(), run.measurements.end(), measurement) != run.measurements.end();
 }
 
-void add_bad_frames(const std::vector<BadFrame>& more, RunReport& report) {
-  for (const BadFrame& frame : more)
-    if (std::none_of(report.bad_frames.begin(), report.bad_frames.end(), [&](const BadFrame& known) {
-          return frame.step ? known.step == frame.step : to_string(known) == to_string(frame);
-        }))
-      report.bad_frames.push_back(frame);
+/// One entry a frame, with all that is wrong with it: passes that read other columns find other faults.
+void add_bad_frames(const std::vector<BadFrame>& more, std::vector<BadFrame>& all) {
+  for (const BadFrame& frame : more) {
+    const auto known = std::find_if(all.begin(), all.end(), [&](const BadFrame& k) {
+      return frame.step ? k.step == frame.step : to_string(k) == to_string(frame);
+    });
+    if (known == all.end())
+      all.push_back(frame);
+    else if (known->reason.find(frame.reason) == std::string::npos)
+      known->reason += "; " + frame.reason;
+  }
 }
 
 }  // namespace
@@ -85,14 +92,16 @@ void MeasurePass::measure(const Frame& frame) {
   ++measured_;
 }
 
-void MeasurePass::visit_frames(const RunReport& report, const std::function<void(const Progress&)>& progress) {
+void MeasurePass::visit_frames(const RunReport& report, const std::function<void(const Progress&)>& progress,
+                               const Checkpoint* checkpoint) {
   visit_single_frames(report, progress);
-  for (PlaneRun& run : plane_runs_) visit_planes(run, report, progress);
+  for (std::size_t n = 0; n < plane_runs_.size(); ++n) visit_planes(n, report, progress, checkpoint);
 }
 
 /// As many frames as there are in the averages, where these ended before the last.
-void MeasurePass::visit_planes(PlaneRun& run, const RunReport& report,
-                               const std::function<void(const Progress&)>& progress) {
+void MeasurePass::visit_planes(std::size_t number, const RunReport& report,
+                               const std::function<void(const Progress&)>& progress, const Checkpoint* checkpoint) {
+  PlaneRun& run = plane_runs_[number];
   set_area(*run.pipeline.planes, source_.frames()[wanted_.front()]);
   if (report.stop) run.pipeline.frames.stop = static_cast<std::int64_t>(wanted_[report.stop->frames - 1]) + 1;
   const auto take = [&](const OutputFields& output) {
@@ -102,10 +111,24 @@ void MeasurePass::visit_planes(PlaneRun& run, const RunReport& report,
     });
   };
   GoodFrames source(source_, report.bad_frames);
-  const RunReport on_planes = compute_fields(run.pipeline, run.plan, source, take, progress);
+  std::unique_ptr<Checkpoint> kept;
+  if (checkpoint != nullptr)
+    kept = checkpoint->of_pass("planes" + std::to_string(number), {{"frames", steps_in_use(report)}});
+  const RunReport on_planes = stream_fields(run.pipeline, run.plan, source, take, progress, {}, kept.get());
   measured_ = std::max(measured_, on_planes.frames);
+  resumed_on_planes_ += on_planes.resumed_at;
+  memory_on_planes_ = std::max(memory_on_planes_, on_planes.memory);
   for (const auto& [step, seconds] : on_planes.seconds) seconds_on_planes_.emplace_back(step + " on planes", seconds);
-  bad_on_planes_.insert(bad_on_planes_.end(), on_planes.bad_frames.begin(), on_planes.bad_frames.end());
+  std::copy_if(on_planes.bad_frames.begin(), on_planes.bad_frames.end(), std::back_inserter(bad_on_planes_),
+               [&](const BadFrame& frame) { return !source.leaves_out(frame); });
+}
+
+/// A line each: those that are measured, unless they turn out to be bad.
+std::string MeasurePass::steps_in_use(const RunReport& report) const {
+  std::string text;
+  for (const std::size_t k : without_bad(up_to_stop(wanted_, report), source_, report.bad_frames))
+    text += std::to_string(source_.frames()[k].step) + '\n';
+  return text;
 }
 
 void MeasurePass::visit_single_frames(const RunReport& report, const std::function<void(const Progress&)>& progress) {
@@ -153,10 +176,12 @@ void MeasurePass::commit(RunReport& report) {
   });
   const OutputUnits units(source_.units(), pipeline_.reduced);
   for (Table& table : report.tables) units.convert(table);
-  add_bad_frames(bad_.list(source_), report);
-  add_bad_frames(bad_on_planes_, report);
+  add_bad_frames(bad_.list(source_), report.bad_frames);
+  add_bad_frames(bad_on_planes_, report.bad_frames);
   report.tables_from = provenance_of(pipeline_, plan_, source_, up_to_stop(wanted_, report), report);
   report.frames = std::max(report.frames, measured_);
+  report.resumed_at += resumed_on_planes_;
+  report.memory = std::max(report.memory, memory_on_planes_);
   report.seconds.insert(report.seconds.end(), clock_.seconds().begin(), clock_.seconds().end());
   report.seconds.insert(report.seconds.end(), seconds_on_planes_.begin(), seconds_on_planes_.end());
   report.wall_seconds = std::max(report.wall_seconds, clock_.passed());

@@ -1,6 +1,7 @@
 #pragma once
 /// The measurements of a pipeline: what they see of the fields as these come, and their own passes over the frames,
 /// which read nothing but what they need.
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -10,6 +11,7 @@
 #include "grainvdb/measurement.hpp"
 #include "grainvdb/run.hpp"
 #include "pipeline/bad_frames.hpp"
+#include "pipeline/checkpoint.hpp"
 #include "pipeline/plane_runs.hpp"
 #include "pipeline/stopwatch.hpp"
 
@@ -23,8 +25,10 @@ class MeasurePass {
   /// The fields of one output time, in order of time.
   void take(const OutputFields& output);
   /// Reads the frames for the measurements of frames and of averages over planes: those that are not bad by the report,
-  /// up to where averaging ended. Without such measurements it reads nothing.
-  void visit_frames(const RunReport& report, const std::function<void(const Progress&)>& progress);
+  /// up to where averaging ended. Without such measurements it reads nothing. With a checkpoint (nullptr: none)
+  /// averages over planes go on where they were interrupted.
+  void visit_frames(const RunReport& report, const std::function<void(const Progress&)>& progress,
+                    const Checkpoint* checkpoint);
   /// Adds the tables to the report, and the frames that were found to be bad.
   void commit(RunReport& report);
 
@@ -36,7 +40,9 @@ class MeasurePass {
   };
   void measure(const Frame& frame);
   void visit_single_frames(const RunReport& report, const std::function<void(const Progress&)>& progress);
-  void visit_planes(PlaneRun& run, const RunReport& report, const std::function<void(const Progress&)>& progress);
+  void visit_planes(std::size_t number, const RunReport& report, const std::function<void(const Progress&)>& progress,
+                    const Checkpoint* checkpoint);
+  std::string steps_in_use(const RunReport& report) const;
 
   const Pipeline& pipeline_;
   const Plan& plan_;
@@ -48,7 +54,9 @@ class MeasurePass {
   BadFrames bad_;
   std::vector<BadFrame> bad_on_planes_;
   std::vector<std::pair<std::string, double>> seconds_on_planes_;
-  std::size_t measured_ = 0;  ///< frames
+  std::size_t resumed_on_planes_ = 0;  ///< frames, over all sweeps
+  double memory_on_planes_ = 0;        ///< [byte]
+  std::size_t measured_ = 0;           ///< frames
   Stopwatch clock_;
 };
 

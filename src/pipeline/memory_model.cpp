@@ -34,6 +34,7 @@ constexpr double tracer = (8 + 3 * 8) + 118 + tracer_sample + (8 + 8 + 3 * 8);
 constexpr double bucket_entry = 4 + 3 * 8 + 3 * 4;  // point, index, local (Buckets)
 constexpr double half_branch = 9 * 8;               // start, arm, force
 constexpr double branch_plan = 8 + 4;               // how it is integrated, and which one a piece is of
+constexpr double plane_entry = 2 * (8 + 4) + 4;     // index and point, before and after they are sorted; their order
 
 bool has_wall_contacts(const Pipeline& pipeline) {
   return !pipeline.input.wall_contacts.files.empty();
@@ -77,6 +78,18 @@ void take_larger(double& a, double b) {
 /// What groups of splats keep of every frame in flight, for each particle and contact and for each image of one.
 struct GroupMemory {
   double particle_values = 0, contact = 0, contact_image = 0;
+  double at_splat = 0;  ///< of a particle, while one of the groups is summed over planes
+
+  /// On planes nothing is sorted into buckets but images of particles, and values are summed about their means.
+  void add_on_planes(const SplatGroup& group, ColumnSet columns, bool ahead) {
+    const double values = 8.0 * group.value_count();
+    if (group.kind() == Moment::Kind::contacts) {
+      contact += 2 * (values + (group.species() ? half_branch + sizeof(int) : 0));
+      return;
+    }
+    if (ahead) particle_values += values;
+    take_larger(at_splat, (ahead ? values : 2 * values) + (group.species() ? column_bytes(columns) : 0));
+  }
 
   void add(const Pipeline& pipeline, const SplatGroup& group, bool ahead) {
     const double values = 8.0 * group.value_count();
@@ -101,9 +114,10 @@ GroupMemory memory_of_groups(const std::map<std::optional<int>, GroupMemory>& gr
     most.particle_values = std::max(most.particle_values, memory.particle_values);
     most.contact = std::max(most.contact, memory.contact);
     most.contact_image = std::max(most.contact_image, memory.contact_image);
+    most.at_splat = std::max(most.at_splat, memory.at_splat);
   }
   return {all.particle_values + most.particle_values, all.contact + most.contact,
-          all.contact_image + most.contact_image};
+          all.contact_image + most.contact_image, std::max(all.at_splat, most.at_splat)};
 }
 
 /// What one sweep keeps of every frame in flight, and of the one that is splatted.
@@ -120,22 +134,23 @@ void add_sweep(const Plan& plan, const Pipeline& pipeline, std::size_t sweep, Me
     for (const SplatGroup& group : pass.groups) {
       kept += 8.0 * group.buffered_channels();
       const bool ahead = &pass == &groups.passes.front() && group.of_frame_alone();
-      memory[group.species()].add(pipeline, group, ahead);
+      GroupMemory& taken = memory[group.species()];
+      pipeline.planes ? taken.add_on_planes(group, columns, ahead) : taken.add(pipeline, group, ahead);
       by_species = by_species || (group.species() && group.kind() != Moment::Kind::contacts);
     }
     for (const MomentPtr& m : pass.voxelwise)
       if (groups.kept.contains(m->name)) kept += 8.0 * m->channels;
   }
-  auto [particle_values, contact, contact_image] = memory_of_groups(memory);
+  auto [particle_values, contact, contact_image, at_splat] = memory_of_groups(memory);
   if (columns.has(Column::contacts) || columns.has(Column::wall_contacts)) {
     contact += 2 * (half_branch + (pipeline.species.empty() ? 0 : sizeof(int)));
     take_larger(model.per_contact_read, contact_bytes(pipeline));
   }
   // Forces have corrected the contacts, and are gone, before there are values.
   if (columns.has(Column::force)) particle -= std::min(force_bytes, particle_values);
-  particle += particle_values;
+  particle += particle_values + at_splat;
   take_larger(model.per_particle, particle);
-  take_larger(model.per_particle_image, by_species ? 2 * bucket_entry : bucket_entry);
+  take_larger(model.per_particle_image, pipeline.planes ? plane_entry : (by_species ? 2 * bucket_entry : bucket_entry));
   take_larger(model.per_contact, contact);
   take_larger(model.per_contact_image, contact_image);
   take_larger(buffered, kept);
@@ -205,7 +220,7 @@ std::string rounded(double bytes) {
 }
 
 std::string per(const std::string& what, double each, double image) {
-  return what + " (" + rounded(each) + " + " + rounded(image) + " i)";
+  return what + ' ' + (image > 0 ? '(' + rounded(each) + " + " + rounded(image) + " i)" : rounded(each));
 }
 
 }  // namespace
@@ -228,10 +243,13 @@ double MemoryModel::more_than_sum(std::size_t runs, double particles, double con
          static_cast<double>(runs - 1) * program;
 }
 
-double images_per_particle(const Lattice& lattice, double cutoff) {
+double images_per_particle(const Lattice& lattice, const Pipeline& pipeline) {
   double images = 1;
-  for (int axis = 0; axis < 3; ++axis)
-    if (const auto& period = lattice.period(axis)) images *= 1 + 2 * cutoff / (period->length * lattice.voxel());
+  for (int axis = 0; axis < 3; ++axis) {
+    if (pipeline.planes && pipeline.planes->axis != axis) continue;
+    if (const auto& period = lattice.period(axis))
+      images *= 1 + 2 * pipeline.cutoff / (period->length * lattice.voxel());
+  }
   return images;
 }
 

@@ -57,7 +57,9 @@ class Writer {
   bool begun_ = false;
   Stopwatch clock_;
   std::mutex turn_;  // no call ever waits: the thread sanitizer does not see TBB's own hand-over
-  tbb::task_group behind_;
+  // Else the tasks would be those of the pipeline that hands over the first output time, which ends before them.
+  tbb::task_group_context apart_{tbb::task_group_context::isolated};
+  tbb::task_group behind_{apart_};
 };
 
 Writer::Writer(const Pipeline& pipeline, const Plan& plan, FrameSource& source, const Sinks& sinks)
@@ -187,8 +189,10 @@ RunReport run_pipeline(const Pipeline& pipeline, const Plan& plan, FrameSource& 
                        const std::function<void(const Progress&)>& progress,
                        const std::optional<CheckpointOptions>& checkpoint) {
   std::optional<Checkpoint> kept;
-  if (checkpoint && streams_whole_fields({sinks, tracer_sinks}, pipeline)) {
-    check_against_input(pipeline, plan, source);  // by which all files of the input are known
+  const bool whole_fields = streams_whole_fields({sinks, tracer_sinks}, pipeline);
+  if (checkpoint && (whole_fields || measures_planes(pipeline))) {
+    // By these checks all files of the input are known.
+    whole_fields ? check_against_input(pipeline, plan, source) : check_measure_against_input(pipeline, source);
     kept.emplace(*checkpoint, key_of_run(pipeline, source));
   }
   return run_into({sinks, tracer_sinks}, pipeline, plan, source, progress, kept ? &*kept : nullptr);

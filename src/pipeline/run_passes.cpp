@@ -21,7 +21,7 @@ RunReport make_passes(const RunPasses& passes, const Pipeline& pipeline, const P
   } else if (passes.tracers != nullptr) {
     report = passes.tracers->compute(progress);
   }
-  if (passes.measurements != nullptr) passes.measurements->visit_frames(report, progress);
+  if (passes.measurements != nullptr) passes.measurements->visit_frames(report, progress, passes.checkpoint);
   return report;
 }
 

@@ -35,37 +35,27 @@ constexpr std::array compute_items{ComputeItem{"pos", 6},
                                    ComputeItem{"verbose", 0}};
 
 /// A column named c_NAME[n].
-struct Indexed {
-  std::string prefix;  ///< "c_NAME"
-  std::size_t index = 0;
-};
-std::optional<Indexed> parse_indexed(const std::string& name) {
-  const std::size_t open = name.find('[');
-  if (!name.starts_with("c_") || open == std::string::npos || name.back() != ']') return std::nullopt;
-  Indexed result{name.substr(0, open), 0};
-  const char* end = name.data() + name.size() - 1;
-  const auto [next, error] = std::from_chars(name.data() + open + 1, end, result.index);
-  if (error != std::errc() || next != end || result.index == 0) return std::nullopt;
+std::optional<ComputeUse> parse_indexed(const std::string& column) {
+  const std::size_t open = column.find('[');
+  if (!column.starts_with("c_") || open == std::string::npos || column.back() != ']') return std::nullopt;
+  ComputeUse result{column.substr(2, open - 2), 0};
+  const char* end = column.data() + column.size() - 1;
+  const auto [next, error] = std::from_chars(column.data() + open + 1, end, result.largest);
+  if (error != std::errc() || next != end || result.largest == 0) return std::nullopt;
   return result;
 }
 
-/// The compute whose columns the dump holds, and the largest index among them.
-Indexed find_compute(const ColumnFinder& finder, const ContactSection& section) {
+/// The compute whose columns the dump holds.
+ComputeUse find_compute(const ColumnFinder& finder, const ContactSection& section) {
   const std::string hint = "Use " + section.path + ".columns in place of compute";
-  Indexed found;
-  for (const std::string& column : finder.header().columns) {
-    const auto indexed = parse_indexed(column);
-    if (!indexed) continue;
-    if (!found.prefix.empty() && found.prefix != indexed->prefix)
-      throw InputError({finder.location(), "the dump holds columns of more than one compute", finder.names(),
-                        "columns of one", hint});
-    found.prefix = indexed->prefix;
-    found.index = std::max(found.index, indexed->index);
-  }
-  if (found.prefix.empty())
+  const std::vector<ComputeUse> found = computes_among(finder.header().columns);
+  if (found.size() > 1)
+    throw InputError(
+        {finder.location(), "the dump holds columns of more than one compute", finder.names(), "columns of one", hint});
+  if (found.empty())
     throw InputError(
         {finder.location(), "the dump has no columns of a compute", finder.names(), "columns such as c_name[1]", hint});
-  return found;
+  return found.front();
 }
 
 void check_keywords(const InputSpec& spec, const ContactSection& section, const std::vector<std::string>& keywords) {
@@ -84,6 +74,20 @@ void check_keywords(const InputSpec& spec, const ContactSection& section, const 
 }
 
 }  // namespace
+
+std::vector<ComputeUse> computes_among(const std::vector<std::string>& columns) {
+  std::vector<ComputeUse> all;
+  for (const std::string& column : columns) {
+    const auto use = parse_indexed(column);
+    if (!use) continue;
+    const auto known = std::find_if(all.begin(), all.end(), [&](const ComputeUse& u) { return u.name == use->name; });
+    if (known == all.end())
+      all.push_back(*use);
+    else
+      known->largest = std::max(known->largest, use->largest);
+  }
+  return all;
+}
 
 ContactSection contact_section() {
   return {"input.contacts", "pair/gran/local"};
@@ -128,24 +132,24 @@ void check_contact_columns(const InputSpec& spec, const ContactSection& section,
 
 ComputeColumns::ComputeColumns(const ColumnFinder& finder, const ContactSection& section,
                                const std::vector<std::string>& keywords) {
-  const Indexed compute = find_compute(finder, section);
+  const ComputeUse compute = find_compute(finder, section);
+  prefix_ = "c_" + compute.name;
   std::size_t width = 0;
   for (const ComputeItem& item : compute_items) {
     if (std::find(keywords.begin(), keywords.end(), item.keyword) == keywords.end()) continue;
     first_[item.keyword] = width + 1;
     width += item.width;
   }
-  const bool wide_history = compute.index > width && first_.contains("history");
-  if (compute.index > width && (!wide_history || first_.contains("contactPoint")))
+  const bool wide_history = compute.largest > width && first_.contains("history");
+  if (compute.largest > width && (!wide_history || first_.contains("contactPoint")))
     throw InputError({finder.location(),
                       "the keywords of " + section.path + ".compute do not account for all columns of the compute",
-                      compute.prefix + '[' + std::to_string(compute.index) + ']',
-                      "at most " + compute.prefix + '[' + std::to_string(width) + "] for " + listed(keywords),
+                      prefix_ + '[' + std::to_string(compute.largest) + ']',
+                      "at most " + prefix_ + '[' + std::to_string(width) + "] for " + listed(keywords),
                       wide_history
                           ? "The contact history seems to be wider than 3, so the contact point cannot be found: use " +
                                 section.path + ".columns"
                           : "List every keyword of the compute"});
-  prefix_ = compute.prefix;
 }
 
 std::string ComputeColumns::name(std::string_view keyword, std::size_t place) const {

@@ -36,6 +36,14 @@ void check_contact_columns(const InputSpec& spec, const ContactSection& section,
                            const std::vector<std::string>& keywords, const ColumnMap& columns, const MapKeys& known,
                            const std::vector<std::string>& needed);
 
+/// A compute some of whose columns, c_NAME[n], a dump has.
+struct ComputeUse {
+  std::string name;
+  std::size_t largest = 0;  ///< n
+};
+/// Each compute among these names of columns, in their order.
+std::vector<ComputeUse> computes_among(const std::vector<std::string>& columns);
+
 /// The columns of a LIGGGHTS compute in a dump. They are in one order, whatever that of the keywords.
 class ComputeColumns {
  public:

@@ -19,17 +19,6 @@ std::string dump_name(std::size_t k) {
   return "spot_" + digits + ".dump";
 }
 
-// Dumps of another run would be read as one with those of this.
-void refuse_used_folder(const std::string& folder) {
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("spot_") && name.ends_with(".dump"))
-      throw ConfigError(
-          {{folder}, "the folder holds dumps of another spot run", name, {}, "Take another folder, or remove them"});
-  }
-}
-
 /// The spot model from snapshot to snapshot.
 class SpotFrames {
  public:
@@ -84,13 +73,17 @@ std::size_t first_after_start(const SpotRun& run) {
   return std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(intervals)));
 }
 
+std::size_t last_snapshot(const SpotRun& run) {
+  return static_cast<std::size_t>(std::floor(run.end / run.interval * (1 + 1e-12)));
+}
+
 template <class Frames>
 SpotReport write_frames(const SpotRun& run, Frames frames, const std::filesystem::path& folder,
                         const std::function<void(std::size_t, std::size_t)>& progress) {
   SpotReport report;
   report.particles_at_start = run.packing.id.size();
   const std::size_t first = first_after_start(run);
-  const auto last = static_cast<std::size_t>(std::floor(run.end / run.interval * (1 + 1e-12)));
+  const std::size_t last = last_snapshot(run);
   for (std::size_t k = 0; k <= last; ++k) {
     const DumpFrame frame = frames.next(static_cast<double>(k) * run.interval);
     if (k == 0 || k >= first) {
@@ -112,6 +105,20 @@ SpotReport write_frames(const SpotRun& run, Frames frames, const std::filesystem
 }
 
 }  // namespace
+
+void refuse_used_folder(const std::string& folder) {
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("spot_") && name.ends_with(".dump"))
+      throw ConfigError(
+          {{folder}, "the folder holds dumps of another spot run", name, {}, "Take another folder, or remove them"});
+  }
+}
+
+std::size_t most_snapshots(const SpotRun& run) {
+  return 1 + last_snapshot(run) - std::min(first_after_start(run) - 1, last_snapshot(run));
+}
 
 SpotReport run_spot(const SpotRun& run, const std::string& folder,
                     const std::function<void(std::size_t, std::size_t)>& progress) {

@@ -153,6 +153,18 @@ std::string describe(const TuneReport& report, const std::map<std::string, doubl
   return table(report, tolerance) + what_it_shows(report) + proposal(report, tolerance);
 }
 
+std::string describe(const TunePlan& plan) {
+  std::string text = "would make at most " + std::to_string(plan.runs) + (plan.runs == 1 ? " run" : " runs") +
+                     ", and compare " + listed(plan.fields) + '\n';
+  if (!plan.not_compared.empty()) text += "not compared: " + listed(plan.not_compared) + '\n';
+  text += "reference:";
+  for (const std::string& s : plan.reference) text += ' ' + s;
+  text += "\nsettings, each by itself:\n";
+  for (const Trial& trial : plan.settings)
+    text += "  " + trial.name() + (trial.refused.empty() ? "" : ": not possible: " + trial.refused) + '\n';
+  return text;
+}
+
 std::string to_csv(const TuneReport& report, const std::map<std::string, double>& tolerance) {
   std::ostringstream text = stream(9);
   text << "setting,current,proposed,front,best_seconds,worst_seconds,repeats,field,rms,largest,points,undefined,"

@@ -7,6 +7,8 @@
 
 #include "measure/grains.hpp"
 #include "pipeline/material.hpp"
+#include "pipeline/no_material.hpp"
+#include "pipeline/unless_bad.hpp"
 
 namespace grainvdb {
 namespace {
@@ -63,16 +65,13 @@ FieldError position_error(const TracerPaths& reference, const TracerPaths& found
 double mean_diameter_of(const Pipeline& pipeline, FrameSource& source) {
   const std::vector<std::size_t> frames = select_frames(pipeline.frames, source.frames().size());
   for (const std::size_t k : frames) {
-    Frame frame = source.read(k, Column::radius | Column::type);
-    apply_selection(pipeline.select, frame.box, frame.particles);
-    const std::vector<double>& radius = frame.particles.radius;
+    auto frame = read_unless_bad(pipeline.input, source, k, Column::radius | Column::type);
+    if (!frame) continue;
+    apply_selection(pipeline.select, frame->box, frame->particles);
+    const std::vector<double>& radius = frame->particles.radius;
     if (!radius.empty()) return mean_diameter(radius);
   }
-  throw InputError({{source.frames()[frames.at(0)].file, 0},
-                    "tracers are compared in mean diameters, and no frame has material",
-                    {},
-                    "a frame with particles that select leaves",
-                    {}});
+  refuse_no_material(pipeline, source, frames);
 }
 
 }  // namespace grainvdb

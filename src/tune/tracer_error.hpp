@@ -33,8 +33,8 @@ class PathSink final : public TracerSink {
 /// tracers that move in both, in units of `diameter`. Those that move in the reference alone are undefined.
 FieldError position_error(const TracerPaths& reference, const TracerPaths& found, double diameter);
 
-/// Number mean of the material in the first frame of the pipeline that has any. Throws InputError where none has, and
-/// what reading throws.
+/// Number mean of the material in the first frame of the pipeline that has any, bad frames passed over where the input
+/// says so. Throws InputError where none has, and what reading throws.
 double mean_diameter_of(const Pipeline& pipeline, FrameSource& source);
 
 }  // namespace grainvdb

@@ -95,6 +95,14 @@ class Tuning {
     check_tolerances();
   }
 
+  TunePlan plan() {
+    list_trials();
+    check_runs();
+    check(load(reference_settings()));
+    for (Trial& trial : report_.trials) unless_refused(trial, [&] { check(load(trial.set)); });
+    return {planned_, reference_settings(), report_.fields, report_.not_compared, report_.trials};
+  }
+
   TuneReport run() {
     list_trials();
     check_runs();
@@ -197,8 +205,17 @@ class Tuning {
     return errors;
   }
 
+  std::vector<std::string> reference_settings() const {
+    return joined(reference_of(current_, plan_), request_.reference);
+  }
+
+  void check(const Pipeline& pipeline) {
+    checked_lattice_of(pipeline, make_plan(pipeline), source_);
+    if (!planes_.empty()) require_same_axis(current_, pipeline);
+  }
+
   void run_reference() {
-    report_.reference = joined(reference_of(current_, plan_), request_.reference);
+    report_.reference = reference_settings();
     Pipeline pipeline = load(report_.reference);
     const bool with_phi = has_volumes(plan_);
     if (with_phi && std::find(pipeline.fields.begin(), pipeline.fields.end(), "phi") == pipeline.fields.end())
@@ -211,14 +228,21 @@ class Tuning {
     reference_tracers_ = std::move(timed.result.tracers);
   }
 
-  /// A setting that cannot be run is reported as refused; only the current one must be possible.
   void run_trial(Trial& trial, std::size_t repeat) {
     if (!trial.refused.empty()) return;
-    try {
+    unless_refused(trial, [&] {
       const Pipeline pipeline = load(trial.set);
       const Timed timed = timed_run(pipeline, trial.name());
       trial.seconds.push_back(timed.seconds);
       if (repeat == 0) trial.errors = errors_of(pipeline, timed.result);
+    });
+  }
+
+  /// A setting that cannot be run is reported as refused; only the current one must be possible.
+  template <class F>
+  void unless_refused(Trial& trial, F work) {
+    try {
+      work();
     } catch (const Error& error) {
       const bool impossible = dynamic_cast<const ConfigError*>(&error) || dynamic_cast<const LimitError*>(&error);
       if (trial.set.empty() || !impossible) throw;
@@ -259,6 +283,10 @@ class Tuning {
 };
 
 }  // namespace
+
+TunePlan plan_tuning(const TuneRequest& request, FrameSource& source) {
+  return Tuning(request, source).plan();
+}
 
 TuneReport tune(const TuneRequest& request, FrameSource& source) {
   return Tuning(request, source).run();

@@ -1,10 +1,8 @@
 // What batch systems and programs ask of a run: estimates before it, and progress, warnings and errors they can parse.
-#include <sstream>
-
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include "cli/example_dumps.hpp"
+#include "cli/json_lines.hpp"
 
 namespace grainvdb::test::batch_test {
 namespace {
@@ -12,13 +10,6 @@ namespace {
 using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-std::vector<json> lines_of(const std::string& text) {
-  std::vector<json> all;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) all.push_back(json::parse(line));
-  return all;
-}
 
 TEST(DryRun, EstimatesAndWritesNothing) {
   const Folder folder;
@@ -58,7 +49,7 @@ TEST(JsonLog, TellsProgressAndWarnings) {
       run_command({"run", "p.yaml", "--log-json", "-q", "--set", "input.on_error=skip_frame"}, folder.path());
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.out, "");
-  const std::vector<json> events = lines_of(result.err);
+  const std::vector<json> events = json_lines(result.err);
   ASSERT_GE(events.size(), 3U);
   EXPECT_EQ(events.front()["event"], "progress");
   EXPECT_EQ(events.front()["frames_done"], 1);
@@ -72,7 +63,7 @@ TEST(JsonLog, TellsErrorsByTheirParts) {
   write_example(folder);
   const CommandResult result = run_command({"run", "p.yaml", "--log-json", "--set", "kernel.cutof=1"}, folder.path());
   EXPECT_EQ(result.exit_code, 1);
-  const std::vector<json> events = lines_of(result.err);
+  const std::vector<json> events = json_lines(result.err);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0]["event"], "error");
   EXPECT_EQ(events[0]["kind"], "config");

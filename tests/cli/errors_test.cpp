@@ -201,8 +201,17 @@ TEST(Errors, ASelectionThatKeepsNothingIsRefused) {
     const CommandResult result =
         run_command({"run", "p.yaml", "--set", "select.types=[7]", "--set", fields}, folder.path());
     EXPECT_EQ(result.exit_code, 2) << fields;
-    EXPECT_THAT(result.err, HasSubstr("no material in any of the frames"));
+    EXPECT_THAT(result.err, AllOf(HasSubstr("no material in any of the frames; found types 1, 2 at step 0"),
+                                  HasSubstr("which wants type 7")));
   }
+  const CommandResult scales = run_command({"run", "p.yaml", "--set", "select.types=[7, 9]", "--set",
+                                            "scales.cutoff=[1.5, 2]", "--set", "scales.voxel=[0.5, 0.5]"},
+                                           folder.path());
+  EXPECT_EQ(scales.exit_code, 2);
+  EXPECT_THAT(scales.err, AllOf(HasSubstr("found types 1, 2 at step 0"), HasSubstr("which wants types 7, 9")));
+  const CommandResult by_id = run_command({"run", "p.yaml", "--set", "select.ids=[100, 200]"}, folder.path());
+  EXPECT_EQ(by_id.exit_code, 2);
+  EXPECT_THAT(by_id.err, Not(HasSubstr("type")));
   EXPECT_THAT(folder.names_in("output"), testing::IsEmpty());
 }
 

@@ -115,6 +115,20 @@ TEST(Measure, ValidateAndGraphKnowOfIt) {
                            Not(HasSubstr("peak memory"))));
 }
 
+TEST(Measure, EstimatesPassesOverPlanes) {
+  const Folder folder;
+  write_dumps(folder);
+  folder.write("p.yaml", pipeline_text() + "measure:\n  plane_profile: {axis: z, area: 1}\n");
+  const std::string graph = run_command({"graph", "p.yaml"}, folder.path()).out;
+  EXPECT_THAT(graph,
+              AllOf(HasSubstr("peak memory of averages over planes normal to z: "), HasSubstr("64 for each plane")));
+  const CommandResult dry = run_command({"measure", "p.yaml", "--dry-run"}, folder.path());
+  ASSERT_EQ(dry.exit_code, 0) << dry.err;
+  EXPECT_THAT(dry.out, AllOf(HasSubstr("step 0 alone: averages over planes, "), HasSubstr(" planes\nall frames: "),
+                             HasSubstr(" MB by the formula"), Not(HasSubstr("active voxels"))));
+  EXPECT_THAT(run_command({"measure", "p.yaml"}, folder.path()).out, HasSubstr(" MB by the formula"));
+}
+
 TEST(Measurements, AreListedWithTheirOptions) {
   const Folder folder;
   const auto said = [&](const std::vector<std::string>& arguments) {

@@ -45,9 +45,11 @@ void run_with_kills(const Folder& folder, const std::vector<std::string>& words,
 TEST(Resume, AfterKillsGivesTheSameBytes) {
   const Folder folder;
   write_many(folder);
-  const std::vector<std::vector<std::string>> cases{{"--set", "output.fields=[phi,stress]"},
-                                                    {"--set", "output.fields=[velocity,temperature]", "--set",
-                                                     "average.window=none", "--set", "output.formats=[hdf5,vdb]"}};
+  const std::vector<std::vector<std::string>> cases{
+      {"--set", "output.fields=[phi,stress]"},
+      {"--set", "output.fields=[velocity,temperature]", "--set", "average.window=none", "--set",
+       "output.formats=[hdf5,vdb]"},
+      {"--set", "output.fields=[phi]", "--set", "measure.plane_profile.fields=[phi,stress]"}};
   for (const auto& settings : cases) {
     std::vector<std::string> words{"run", "p.yaml"};
     words.insert(words.end(), settings.begin(), settings.end());

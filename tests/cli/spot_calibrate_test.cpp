@@ -1,7 +1,10 @@
 /// The calibration of the spot model as a user runs it: dumps of a silo in, a spot file out that runs.
+#include <filesystem>
+
 #include <gmock/gmock.h>
 
 #include "cli/command.hpp"
+#include "cli/json_lines.hpp"
 #include "support/sample_dumps.hpp"
 
 namespace grainvdb::test::spot_calibrate_test {
@@ -64,6 +67,30 @@ TEST(SpotCalibrate, CorrectsByComparison) {
   const CommandResult alone = calibrate(folder, {"--runs", "4"});
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_THAT(alone.err, HasSubstr("--by-comparison"));
+}
+
+TEST(SpotCalibrate, SaysBeforeWhatItWouldMeasure) {
+  const Folder folder;
+  const CommandResult dry = calibrate(folder, {"--dry-run", "--by-comparison", "--rounds", "2", "--runs", "3"});
+  ASSERT_EQ(dry.exit_code, 0) << dry.err;
+  EXPECT_THAT(dry.out, AllOf(HasSubstr("measured: spot_calibration: "), HasSubstr("would use "),
+                             HasSubstr("at most 2 x 3 runs of the spot file")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "c"));
+  EXPECT_EQ(calibrate(folder, {"--dry-run", "--set", "measure.spot_calibration.slot_width=0"}).exit_code, 1);
+}
+
+TEST(SpotCalibrate, LogsFramesAndErrors) {
+  const Folder folder;
+  const CommandResult result = calibrate(folder, {"--quiet", "--log-json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  const auto events = json_lines(result.err);
+  ASSERT_GE(events.size(), 1U);
+  EXPECT_EQ(events.front()["event"], "progress");
+  const auto errors =
+      json_lines(calibrate(folder, {"--log-json", "--set", "measure.spot_calibration.slot_width=0"}).err);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0]["kind"], "config");
 }
 
 TEST(SpotCalibrate, IsQuietWhenAsked) {

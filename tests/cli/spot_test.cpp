@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "cli/command.hpp"
+#include "cli/json_lines.hpp"
 #include "support/sample_dumps.hpp"
 
 namespace grainvdb::test::spot_test {
@@ -48,6 +49,39 @@ TEST(Spot, OneSeedGivesTheSameDumpsAndAnotherGivesOthers) {
   EXPECT_THAT(first, HasSubstr("ITEM: TIME\n0.5\n"));
   EXPECT_EQ(first, last_dump("two", "1"));
   EXPECT_NE(first, last_dump("three", "2"));
+}
+
+TEST(Spot, SaysBeforeWhatItWouldRun) {
+  const Folder folder;
+  const CommandResult dry = run_command({"spot", "run", shipped_file(), "--dry-run"}, folder.path());
+  ASSERT_EQ(dry.exit_code, 0) << dry.err;
+  EXPECT_THAT(dry.out, AllOf(HasSubstr("\nwould begin with "), HasSubstr(" at most 5 snapshots until time 2\n"),
+                             HasSubstr("relaxation:")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "spot"));
+  const CommandResult from =
+      run_command({"spot", "run", shipped_file(), "--dry-run", "--set", "output.from=1.6"}, folder.path());
+  EXPECT_THAT(from.out, HasSubstr(" at most 2 snapshots until time 2\n"));
+  folder.write("spot/spot_0000000.dump", "");
+  const CommandResult used = run_command({"spot", "run", shipped_file(), "--dry-run"}, folder.path());
+  EXPECT_EQ(used.exit_code, 1);
+  EXPECT_THAT(used.err, HasSubstr("the folder holds dumps of another spot run"));
+}
+
+TEST(Spot, LogsSnapshotsAndErrors) {
+  const Folder folder;
+  const CommandResult run =
+      run_command({"spot", "run", shipped_file(), "--log-json", "-q", "--set", "output.end=0.5"}, folder.path());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.out, "");
+  const auto events = json_lines(run.err);
+  ASSERT_GE(events.size(), 2U);
+  EXPECT_EQ(events.front()["doing"], "snapshots");
+  EXPECT_EQ(events.back()["frames_done"], events.back()["frames_total"]);
+  const auto errors =
+      json_lines(run_command({"spot", "run", shipped_file(), "--log-json", "--set", "sed=1"}, folder.path()).err);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0]["event"], "error");
+  EXPECT_EQ(errors[0]["kind"], "config");
 }
 
 /// Dumps of the shipped file until a time, made once.

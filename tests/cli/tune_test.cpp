@@ -2,6 +2,7 @@
 
 #include "cli/command.hpp"
 #include "cli/example_dumps.hpp"
+#include "cli/json_lines.hpp"
 
 namespace grainvdb::test::tune_test {
 namespace {
@@ -18,6 +19,33 @@ TEST(Tune, PrintsATableAndWritesIt) {
   ASSERT_EQ(r.exit_code, 0) << r.err;
   EXPECT_THAT(r.out, AllOf(HasSubstr("as it is"), HasSubstr("lattice.voxel="), HasSubstr("\nwrote tune/tune.csv\n")));
   EXPECT_THAT(read_file(folder / "tune/tune.csv"), HasSubstr("\"\",1,"));
+}
+
+TEST(Tune, SaysBeforeWhatItWouldTry) {
+  const Folder folder;
+  write_example(folder);
+  const CommandResult r = run_command({"tune", "p.yaml", "--dry-run", "--repeats", "2"}, folder.path());
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_THAT(r.out, AllOf(HasSubstr("would make at most "), HasSubstr("\nreference: lattice.voxel=0.25"),
+                           HasSubstr("\n  as it is\n  lattice.voxel="), HasSubstr("would use 3 of 3 frames\n")));
+  EXPECT_FALSE(std::filesystem::exists(folder / "tune"));
+  EXPECT_EQ(run_command({"tune", "p.yaml", "--dry-run", "--tolerance", "mu=0.1"}, folder.path()).exit_code, 1);
+}
+
+TEST(Tune, LogsItsRunsAndErrors) {
+  const Folder folder;
+  write_example(folder);
+  const CommandResult r = run_command(
+      {"tune", "p.yaml", "--log-json", "-q", "--repeats", "1", "--knobs", "frames", "--no-picture"}, folder.path());
+  ASSERT_EQ(r.exit_code, 0) << r.err;
+  EXPECT_EQ(r.out, "");
+  const auto events = json_lines(r.err);
+  ASSERT_GE(events.size(), 2U);
+  EXPECT_EQ(events.front()["event"], "progress");
+  EXPECT_THAT(events.front()["doing"].get<std::string>(), HasSubstr("run 1 of at most "));
+  const auto errors = json_lines(run_command({"tune", "q.yaml", "--log-json"}, folder.path()).err);
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0]["kind"], "io");
 }
 
 TEST(Tune, RefusesOptionsThatMakeNoSense) {

@@ -33,6 +33,15 @@ TEST(Usage, EveryCommandHasHelpWithExamples) {
   }
 }
 
+TEST(Usage, CommandsThatTakeLongCanBeTriedAndLogged) {
+  for (const std::vector<std::string>& command : std::vector<std::vector<std::string>>{
+           {"run"}, {"trace"}, {"measure"}, {"tune"}, {"spot", "run"}, {"spot", "calibrate"}}) {
+    std::vector<std::string> words = command;
+    words.emplace_back("--help");
+    EXPECT_THAT(grainvdb(words).out, AllOf(HasSubstr("--dry-run "), HasSubstr("--log-json "))) << command.back();
+  }
+}
+
 TEST(Usage, HelpDocumentsCommandsAndExitCodes) {
   const CommandResult result = grainvdb({"--help"});
   EXPECT_EQ(result.exit_code, 0);
@@ -121,6 +130,10 @@ TEST(Usage, BashCompletesCommandsOptionsAndFiles) {
   EXPECT_EQ(completed("grainvdb spot ca"), "calibrate\n");
   EXPECT_EQ(completed("grainvdb spot calibrate --fr"), "--frames\n");
   EXPECT_EQ(completed("grainvdb spot run --qu"), "--quiet\n");
+  for (const std::string command : {"tune", "spot run", "spot calibrate"}) {
+    EXPECT_EQ(completed("grainvdb " + command + " --dry"), "--dry-run\n");
+    EXPECT_EQ(completed("grainvdb " + command + " --log"), "--log-json\n");
+  }
   EXPECT_EQ(completed("grainvdb run run --dt"), "\n");
 }
 

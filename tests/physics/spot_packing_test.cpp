@@ -6,8 +6,8 @@
 
 #include "physics/jackknife.hpp"
 #include "physics/spot_scene.hpp"
+#include "spot/published_spots.hpp"
 #include "spot/random_packing.hpp"
-#include "support/spot_parameters.hpp"
 
 namespace grainvdb::testing::spot_packing_test {
 namespace {
@@ -76,7 +76,7 @@ TEST(SpotPacking, WithoutRelaxationOverlapsBecomeThoseOfRandomPlaces) {
 // The published parameters and the published limits: B ≤ 0.002, no pair nearer than 0.99 d.
 TEST(SpotPacking, WithRelaxationHardlyAnythingOverlaps) {
   const Box box{{-9, 0, 0}, {9, 8, 14}, {false, true, false}};
-  spot::SpotParameters p = published_spots();
+  spot::SpotParameters p = spot::published_spots();
   p.insertion_rate = 200;
   spot::SpotModel model({box, spot::Orifice{spot::Orifice::Shape::slot, {0, 0}, 6}},
                         spot::random_packing(box, 0.58, 1, 43), p, 44);
@@ -173,7 +173,7 @@ Drainage drained_silo(const spot::SpotParameters& p) {
 // orifice let more down than gets out, and relaxation packs the rest: φ rises. Spots that begin below and stay clear of
 // the plate do not; λN/w leave, N of 84 grains at φ = 0.6.
 TEST(SpotPacking, ASiloThatDrainsStaysAsDenseAsItIsWhereSpotsStayClearOfTheFloor) {
-  spot::SpotParameters p = published_spots();
+  spot::SpotParameters p = spot::published_spots();
   p.influence = 200;
   p.insertion_rate = 60;
   const Drainage over = drained_silo(p);

@@ -3,20 +3,22 @@
 #include <cmath>
 #include <vector>
 
+#include "spot/published_spots.hpp"
 #include "spot/snapshot.hpp"
 #include "spot/spot_model.hpp"
 
 namespace grainvdb::testing {
 
-/// The published spots, without relaxation, of an influence that moves a particle by 1e-6 of a step.
+/// The published spots, without relaxation, of an influence that moves a particle by 1e-6 of a step; they step once a
+/// unit of time, and none enters unless that is set.
 inline spot::SpotParameters gentle_spots() {
-  spot::SpotParameters p;
-  p.radius = 2.6;
+  spot::SpotParameters p = spot::published_spots();
   p.influence = 1e6;
-  p.step = {0.676, 0.676, 0.1};
   p.hop_rate = 1;
+  p.insertion_rate = 0;
+  p.entry = spot::SpotParameters::Entry::centre;
+  p.wall_distance = 0;
   p.relaxation.every = 0;
-  p.relaxation.radius = 3.6;
   return p;
 }
 

@@ -250,6 +250,12 @@ class MeasuredLaws(unittest.TestCase):
         np.testing.assert_array_equal(lines["(A20), fitted"].get_ydata(), laws.fluidity(phi, 1.9, 0.58, 2e-4, 0.05))
         self.assertEqual(drawn["mu"].get_xscale(), "log")
 
+    def test_legends_cover_no_error_bars(self):
+        write_fits(self.path)
+        for ax in self.drawn().values():
+            ax.figure.draw_without_rendering()
+            self.assertGreaterEqual(ax.get_legend().get_window_extent().y0, ax.bbox.y1)
+
     def test_refused_fits_are_not_drawn(self):
         write_fits(self.path, fluidity=[np.nan] * 4, friction=[np.nan] * 3)
         drawn = self.drawn()

@@ -27,19 +27,31 @@ using ::testing::SizeIs;
 /// Some frames cannot be read when a certain column is wanted.
 class FaultySource : public MemorySource {
  public:
-  FaultySource(std::vector<Frame> frames, std::map<std::int64_t, ColumnSet> faults)
+  FaultySource(std::vector<Frame> frames, std::multimap<std::int64_t, ColumnSet> faults)
       : MemorySource(std::move(frames)), faults_(std::move(faults)) {}
   Frame read(std::size_t k, ColumnSet wanted) override {
     const FrameInfo& frame = frames()[k];
-    const auto fault = faults_.find(frame.step);
-    if (fault != faults_.end() && (wanted | fault->second) == wanted)
-      throw InputError({{frame.file, 7}, "a bad row", {}, {}, {}});
+    const auto [first, last] = faults_.equal_range(frame.step);
+    for (auto fault = first; fault != last; ++fault)
+      if ((wanted | fault->second) == wanted) throw InputError({{frame.file, 7}, reason(fault->second), {}, {}, {}});
     return MemorySource::read(k, wanted);
   }
 
  private:
-  std::map<std::int64_t, ColumnSet> faults_;
+  static std::string reason(ColumnSet columns) {
+    std::string text = "a bad row";
+    for (const std::string& column : column_names(columns))
+      if (column != "id" && column != "position") text += ", " + column;
+    return text;
+  }
+
+  std::multimap<std::int64_t, ColumnSet> faults_;
 };
+
+void measure_by_default(Pipeline& p, const std::string& measurement) {
+  for (const OptionInfo& option : find_measurement(measurement)->options)
+    p.measure[measurement][option.name] = option.default_value;
+}
 
 /// Seven frames of two kinds in turn, at the steps 0, 10, … 60.
 std::vector<Frame> frames_of(const Scene& scene) {
@@ -90,8 +102,7 @@ TEST_F(SkippedFrames, AreInNoSumOfAnySweep) {
 // Averages over planes, which read less, must be of the frames that the fields are of.
 TEST_F(SkippedFrames, AreInNoAverageOverPlanes) {
   Pipeline p = skipping({"contact_stress"});
-  for (const OptionInfo& option : find_measurement("plane_profile")->options)
-    p.measure["plane_profile"][option.name] = option.default_value;
+  measure_by_default(p, "plane_profile");
   FaultySource faulty(frames_, {{20, Column::contacts}, {40, Column::mass}});
   const Result result = run(p, faulty);
   MemorySource good(without(frames_, {20, 40}));
@@ -105,6 +116,25 @@ TEST_F(SkippedFrames, AreInNoAverageOverPlanes) {
   }
   ASSERT_THAT(result.report.bad_frames, SizeIs(2));  // of which the second is bad for density alone
   EXPECT_THAT(result.report.bad_frames[0].reason, HasSubstr("a bad row"));
+}
+
+// Passes that read contacts and masses find different faults in one frame, and the same ones in others.
+TEST_F(SkippedFrames, StandWithAllThatIsWrongWithThem) {
+  Pipeline p = skipping({});
+  measure_by_default(p, "plane_profile");
+  measure_by_default(p, "coordination");
+  p.measure["coordination"]["contacts"] = std::string("dump");
+  FaultySource faulty(frames_, {{20, Column::contacts}, {20, Column::mass}, {30, {}}});
+  const RunReport report = measure(p, faulty);
+  ASSERT_THAT(report.bad_frames, SizeIs(2));
+  EXPECT_EQ(report.bad_frames[0].step, 20);
+  EXPECT_EQ(report.bad_frames[0].reason, "frame2:7: a bad row, contacts; frame2:7: a bad row, mass");
+  EXPECT_EQ(report.bad_frames[1].reason, "frame3:7: a bad row");
+  // Those that fields leave out are known to be bad, whatever measurements read.
+  p.fields = {"contact_stress"};
+  const Result after_fields = run(p, faulty);
+  ASSERT_THAT(after_fields.report.bad_frames, SizeIs(2));
+  EXPECT_EQ(after_fields.report.bad_frames[0].reason, "frame2:7: a bad row, contacts");
 }
 
 // A block that loses all its frames does not count; seven frames in five blocks are 1, 1, 2, 1, 2.
@@ -151,6 +181,15 @@ TEST_F(SkippedFrames, EndTheRunUnlessAskedFor) {
   EXPECT_THROW(run(p, faulty), InputError);
 }
 
+// A pass behind that for fields fails, whose output may still be on its way to the sinks.
+TEST_F(SkippedFrames, EndTheRunInALaterPass) {
+  Pipeline p = skipping({"phi"});
+  p.input.on_error = OnError::error;
+  measure_by_default(p, "plane_profile");
+  FaultySource faulty(frames_, {{60, Column::mass}});
+  for (int n = 0; n < 20; ++n) EXPECT_THROW(run(p, faulty), InputError);
+}
+
 TEST_F(SkippedFrames, LeaveTheirWindowTheRest) {
   Pipeline p = skipping({"phi", "kinetic_stress"});
   p.window = 3;
@@ -195,8 +234,8 @@ TEST_F(SkippedFrames, MayLeaveAnOutputTimeWithoutVoxels) {
 }
 
 TEST_F(SkippedFrames, AreNotAllThereIs) {
-  std::map<std::int64_t, ColumnSet> all;
-  for (const Frame& f : frames_) all[f.step] = {};
+  std::multimap<std::int64_t, ColumnSet> all;
+  for (const Frame& f : frames_) all.emplace(f.step, ColumnSet());
   for (const std::size_t window : {0, 1, 3}) {
     Pipeline p = skipping({"phi"});
     p.window = window;
@@ -239,8 +278,8 @@ TEST_F(SkippedFrames, LeaveNoSeedsWhereAllAreBad) {
   p.trace->duration = 0.1;
   p.trace->dt = 0.05;
   p.trace->seeds.particles.emplace(SeedSpec::OnParticles{{}, 20});
-  std::map<std::int64_t, ColumnSet> all;
-  for (const Frame& f : frames_) all[f.step] = {};
+  std::multimap<std::int64_t, ColumnSet> all;
+  for (const Frame& f : frames_) all.emplace(f.step, ColumnSet());
   FaultySource faulty(frames_, all);
   EXPECT_THROW(trace(p, faulty), InputError);
 }

@@ -1,6 +1,7 @@
 // What a run that follows its input does while nothing interrupts it.
 #include "grainvdb/follow.hpp"
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -64,6 +65,37 @@ TEST(Follow, SumsEachFrameOnceInEachSweep) {
     const auto dumps = open_dumps(p.input);
     expect_same_fields(*record, run(p, *dumps).record);
   }
+}
+
+struct Interruption {};
+
+// The input ends, a second sweep over it begins and is interrupted, and then there are more frames after all: what was
+// summed in that sweep is about the mean of too few.
+TEST(Follow, BeginsAnewWhereWhatItSavedIsNoneOfMoreFrames) {
+  const TemporaryFolder folder;
+  Pipeline p = make_pipeline(0.5, {0, 0, 0}, 1, {"phi", "velocity", "kinetic_stress"});
+  p.input.particles = {folder.path() + "/dump*"};
+  p.input.dt = 1;
+  const Plan plan = make_plan(p);
+  ASSERT_EQ(plan.sweeps.size(), 2U);
+  const auto follow = [&](const std::function<void(const Progress&)>& progress) {
+    const auto record = std::make_shared<Record>();
+    std::vector<std::unique_ptr<FieldSink>> sinks;
+    sinks.push_back(std::make_unique<MemorySink>(record));
+    FollowedInput input(p.input);
+    FollowOptions waiting;
+    waiting.timeout = 0;
+    follow_pipeline(p, plan, input, sinks, {}, waiting, {folder.path() + "/output"}, progress);
+    return record;
+  };
+  for (int step = 0; step < 4; ++step) write_plain(folder.path() + "/dump" + std::to_string(step), dump(step));
+  EXPECT_THROW(follow([](const Progress& now) {
+                 if (now.doing == "sweep 2 of 2" && now.frames_done == 6) throw Interruption();
+               }),
+               Interruption);
+  for (int step = 4; step < 6; ++step) write_plain(folder.path() + "/dump" + std::to_string(step), dump(step));
+  const auto dumps = open_dumps(p.input);
+  expect_same_fields(*follow({}), run(p, *dumps).record);
 }
 
 }  // namespace

@@ -1,10 +1,14 @@
 // C(r) of grains that move with spheres of influence, of rigid and of independent motion, and the fitted radius.
 #include "measure/velocity_correlation.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "lattices.hpp"
 #include "measure/cell_grid.hpp"
@@ -89,6 +93,50 @@ TEST(VelocityCorrelation, IsOneWhereAllMoveAlikeAndNoneWhereEachMovesByItself) {
     EXPECT_NEAR(one.c(k), 1, 1e-12);
     // u·u'/√(⟨u²⟩⟨u'²⟩) of three components each has variance 1/3; pairs count in both orders.
     EXPECT_NEAR(none.c(k), 0, 5 * std::sqrt(2.0 / 3 / static_cast<double>(none.pairs(k))));
+  }
+}
+
+// Each pair once, by its nearest image along periodic axes. Enough grains for several parts in each slab; the sums are
+// of up to 1e5 terms, each rounded.
+TEST(VelocityCorrelation, IsThatOfAllPairsForAnyNumberOfThreads) {
+  constexpr double reach = 4;
+  constexpr std::size_t bins = 8;
+  const Box box{{0, 0, 0}, {30, 12, 12}, {true, false, true}};
+  const Scene s = poisson(box, 8000, 12);
+  Random random(3);
+  Columns3 u;
+  for (auto& column : u)
+    for (std::size_t i = 0; i < s.size(); ++i) column.push_back(random.normal() + s.position[2][i]);
+  struct Sums {
+    double product = 0, first = 0, second = 0;
+    std::size_t pairs = 0;
+  };
+  std::array<Sums, bins> expected{};
+  const auto dot = [&](std::size_t i, std::size_t j) {
+    return u[0][i] * u[0][j] + u[1][i] * u[1][j] + u[2][i] * u[2][j];
+  };
+  for (std::size_t i = 0; i < s.size(); ++i)
+    for (std::size_t j = 0; j < s.size(); ++j) {
+      double r2 = 0;
+      for (std::size_t a = 0; a < 3; ++a)
+        r2 += std::pow(box.minimum_image(static_cast<int>(a), s.position[a][j] - s.position[a][i]), 2);
+      if (i == j || r2 > reach * reach) continue;
+      Sums& sums = expected[std::min(bins - 1, static_cast<std::size_t>(std::sqrt(r2) * bins / reach))];
+      sums.product += dot(i, j);
+      sums.first += dot(i, i);
+      sums.second += dot(j, j);
+      ++sums.pairs;
+    }
+  VelocityCorrelation one(reach, bins), many(reach, bins);
+  for (const auto& [c, threads] : {std::pair<VelocityCorrelation*, std::size_t>{&one, 1}, {&many, 4}}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    c->add(box, s.position, u, Slabs(box));
+  }
+  for (std::size_t k = 0; k < bins; ++k) {
+    EXPECT_EQ(one.pairs(k), expected[k].pairs);
+    EXPECT_NEAR(one.c(k), expected[k].product / std::sqrt(expected[k].first * expected[k].second), 1e-11);
+    EXPECT_EQ(one.c(k), many.c(k));
+    EXPECT_EQ(one.error(k), many.error(k));
   }
 }
 

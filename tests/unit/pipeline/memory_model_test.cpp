@@ -110,6 +110,31 @@ TEST(MemoryModel, KnowsOfTheForcesThatCorrectContacts) {
   EXPECT_NEAR(corrected.per_particle - model_of({"contact_stress"}).per_particle, holes * (3 * 8 + 8), 1e-9);  // mass
 }
 
+// Over planes nothing is bucketed: a particle has the index and number of its images, before and after sorting, and a
+// copy of its values about their mean; a contact its two halves and their values.
+TEST(MemoryModel, KnowsOfSumsOverPlanes) {
+  Pipeline p = pipeline_of({"phi"});
+  p.planes = Planes{2, 1};
+  constexpr double holes = 1.1;
+  const MemoryModel phi = memory_model(make_plan(p), p);
+  EXPECT_DOUBLE_EQ(phi.per_particle, holes * ((8 + 3 * 8 + 8) + 2 * 8));
+  EXPECT_DOUBLE_EQ(phi.per_particle_image, holes * (2 * (8 + 4) + 4));
+  p.fields = {"contact_stress"};
+  const MemoryModel stress = memory_model(make_plan(p), p);
+  EXPECT_DOUBLE_EQ(stress.per_contact, holes * 2 * (9 + 9) * 8);
+  EXPECT_EQ(stress.per_contact_image, 0);
+  EXPECT_THAT(to_string(stress), ::testing::HasSubstr(" + C 317]"));
+}
+
+// Along the planes there is one period of a voxel, which images do not count.
+TEST(MemoryModel, CountsImagesAlongTheNormalOfPlanes) {
+  Pipeline p = pipeline_of({"phi"});
+  Lattice lattice(1, {});
+  lattice.set_periods({{0, 0, 0}, {1, 1, 12}, {true, true, true}});
+  p.planes = Planes{2, 1};
+  EXPECT_DOUBLE_EQ(images_per_particle(lattice, p), 1 + 2 * 3.0 / 12);
+}
+
 TEST(MemoryModel, CountsContactPointsOfWalls) {
   constexpr double holes = 1.1;
   Pipeline p = pipeline_of({"wall_force"});

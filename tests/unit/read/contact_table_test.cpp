@@ -1,4 +1,5 @@
 /// Columns of contact dumps: by the keywords of the compute, by a map, by plain names.
+#include "read/contact_columns.hpp"
 #include "unit/read/dump_files.hpp"
 
 namespace grainvdb::contact_table_test {
@@ -109,6 +110,16 @@ TEST_F(ContactTableTest, RowsAreSortedByTheirIds) {
   EXPECT_THAT(c.id1, ElementsAre(1, 1, 3));
   EXPECT_THAT(c.id2, ElementsAre(2, 3, 2));
   EXPECT_THAT(c.force[2], ElementsAre(1, 2, 3));
+}
+
+TEST(ComputesAmong, AreNamedOnceWithTheirLargestColumn) {
+  const std::vector<ComputeUse> all =
+      computes_among({"id", "c_pp[1]", "c_pl[3]", "c_pp[2]", "c_pl[1]", "c_ke", "c_x[0]", "c_x[1", "c_x[a]", "v_n[2]"});
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].name, "pp");
+  EXPECT_EQ(all[0].largest, 2U);
+  EXPECT_EQ(all[1].name, "pl");
+  EXPECT_EQ(all[1].largest, 3U);
 }
 
 TEST_F(ContactTableTest, NoContactsIsAFrame) {

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include "measure/spots.hpp"
+#include "spot/published_spots.hpp"
 #include "spot/random_packing.hpp"
 #include "spot/snapshot.hpp"
 #include "spot/spot_file.hpp"
@@ -14,7 +15,6 @@
 #include "support/memory_source.hpp"
 #include "support/run_in_memory.hpp"
 #include "support/sample_dumps.hpp"
-#include "support/spot_parameters.hpp"
 
 namespace grainvdb::spot::calibration_test {
 namespace {
@@ -31,7 +31,7 @@ Container silo() {
 }
 
 SpotParameters unrelaxed() {
-  SpotParameters p = testing::published_spots();
+  SpotParameters p = published_spots();
   p.relaxation.every = 0;
   return p;
 }

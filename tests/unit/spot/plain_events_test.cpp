@@ -9,9 +9,9 @@
 
 #include <gtest/gtest.h>
 
+#include "spot/published_spots.hpp"
 #include "spot/random_packing.hpp"
 #include "spot/snapshot.hpp"
-#include "support/spot_parameters.hpp"
 
 namespace grainvdb::spot::plain_events_test {
 namespace {
@@ -120,7 +120,7 @@ class EveryEvent : public ::testing::TestWithParam<Case> {};
 // The packing is random places, in which many particles overlap and cells hold from none to many.
 TEST_P(EveryEvent, IsThatOfThePlainModel) {
   const Container& container = GetParam().container;
-  SpotParameters p = testing::published_spots();
+  SpotParameters p = published_spots();
   p.influence = 8;  // particles go far
   p.relaxation.every = GetParam().every;
   p.count = 10;

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include "spot/published_spots.hpp"
 #include "spot/random_packing.hpp"
 #include "spot/snapshot.hpp"
-#include "support/spot_parameters.hpp"
 
 namespace grainvdb::spot::spot_model_test {
 namespace {
@@ -34,20 +34,20 @@ std::string text_after(const SpotParameters& p, std::uint64_t seed, const std::v
 }
 
 TEST(SpotModel, IsReproducibleForASeed) {
-  const std::string one = text_after(testing::published_spots(), 1, {2});
-  EXPECT_EQ(one, text_after(testing::published_spots(), 1, {2}));
-  EXPECT_EQ(one, text_after(testing::published_spots(), 1, {0.3, 1.1, 2}));  // however the run is cut
-  EXPECT_NE(one, text_after(testing::published_spots(), 2, {2}));
+  const std::string one = text_after(published_spots(), 1, {2});
+  EXPECT_EQ(one, text_after(published_spots(), 1, {2}));
+  EXPECT_EQ(one, text_after(published_spots(), 1, {0.3, 1.1, 2}));  // however the run is cut
+  EXPECT_NE(one, text_after(published_spots(), 2, {2}));
 }
 
 TEST(SpotModel, DoesNotDependOnTheOrderOfThePacking) {
   Packing reversed = packing();
   std::reverse(reversed.id.begin(), reversed.id.end());
   std::reverse(reversed.position.begin(), reversed.position.end());
-  SpotModel model(silo(), reversed, testing::published_spots(), 1);
+  SpotModel model(silo(), reversed, published_spots(), 1);
   model.advance(2);
   const Snapshot now = take_snapshot(model);
-  EXPECT_EQ(text_after(testing::published_spots(), 1, {2}),
+  EXPECT_EQ(text_after(published_spots(), 1, {2}),
             dump_text(make_frame(model, now, velocities(now, now, model.particles().unit())), 0, "lj"));
 }
 
@@ -55,7 +55,7 @@ TEST(SpotModel, DoesNotDependOnTheOrderOfThePacking) {
 // by -1/w of its way.
 TEST(SpotModel, AParticleMovesByMinusOneOverWOfTheSpotsStep) {
   const Box box{{0, 0, 0}, {12, 12, 12}, {true, true, true}};
-  SpotParameters p = testing::published_spots();
+  SpotParameters p = published_spots();
   p.insertion_rate = 0;
   p.count = 1;
   p.relaxation.every = 0;
@@ -87,7 +87,7 @@ TEST(SpotModel, AParticleMovesByMinusOneOverWOfTheSpotsStep) {
 }
 
 TEST(SpotModel, AccountsForEveryParticle) {
-  SpotParameters p = testing::published_spots();
+  SpotParameters p = published_spots();
   p.influence = 40;  // drains fast
   SpotModel model(silo(), packing(), p, 4);
   model.advance(12);
@@ -108,7 +108,7 @@ TEST(SpotModel, AccountsForEveryParticle) {
 
 TEST(SpotModel, AnEmptyContainerLetsSpotsThrough) {
   Packing few{1, {5}, {{0, 4, 0.5}}};
-  SpotParameters p = testing::published_spots();
+  SpotParameters p = published_spots();
   p.influence = 10;
   SpotModel model(silo(), few, p, 1);
   model.advance(20);
@@ -118,7 +118,7 @@ TEST(SpotModel, AnEmptyContainerLetsSpotsThrough) {
 }
 
 TEST(SpotModel, RelaxesEveryKthStepOrByChance) {
-  SpotParameters p = testing::published_spots();
+  SpotParameters p = published_spots();
   const auto share = [&] {
     SpotModel model(silo(), packing(), p, 5);
     model.run_events(20'000);
@@ -134,7 +134,7 @@ TEST(SpotModel, RelaxesEveryKthStepOrByChance) {
 }
 
 TEST(SpotModel, SpotsKeepTheirDistanceFromWalls) {
-  SpotParameters p = testing::published_spots();
+  SpotParameters p = published_spots();
   p.relaxation.every = 0;
   const auto widest = [&](double distance) {
     p.wall_distance = distance;
@@ -153,7 +153,7 @@ TEST(SpotModel, SpotsKeepTheirDistanceFromWalls) {
 // Not nearer to the plate beside the slot than that: a slot of 5 leaves nothing of 2.6, and spots rise in its middle
 // first.
 TEST(SpotModel, SpotsKeepTheirDistanceFromTheFloor) {
-  SpotParameters p = testing::published_spots();
+  SpotParameters p = published_spots();
   p.relaxation.every = 0;
   p.entry_depth = 2;
   const auto nearest = [&](double distance) {
@@ -180,7 +180,7 @@ TEST(SpotModel, ABiasLeadsSpotsTowardsParticles) {
       half.id.push_back(packing().id[i]);
       half.position.push_back(packing().position[i]);
     }
-  SpotParameters p = testing::published_spots();
+  SpotParameters p = published_spots();
   p.relaxation.every = 0;
   const auto right = [&] {
     SpotModel model(silo(), half, p, 7);

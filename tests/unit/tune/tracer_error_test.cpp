@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "grainvdb/error.hpp"
@@ -90,6 +91,39 @@ TEST(MeanDiameterOf, IsThatOfTheFirstFrameWithMaterial) {
   EXPECT_EQ(mean_diameter_of({}, source), 3);
   MemorySource nothing({grains(0, {})});
   EXPECT_THROW(mean_diameter_of({}, nothing), InputError);
+}
+
+TEST(MeanDiameterOf, NamesTheTypesThatThereAre) {
+  MemorySource source({grains(0, {}), grains(1, {1, 2})});
+  Pipeline pipeline;
+  pipeline.select.types = {7};
+  try {
+    mean_diameter_of(pipeline, source);
+    ADD_FAILURE() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("found type 1 at step 1; expected at least one particle that select "
+                                                   "keeps, which wants type 7"));
+  }
+}
+
+/// Its first frame cannot be read.
+class BadFirstFrame final : public MemorySource {
+ public:
+  using MemorySource::MemorySource;
+  Frame read(std::size_t k, ColumnSet wanted) override {
+    if (k == 0) throw InputError({{"first", 0}, "a bad frame", {}, {}, {}});
+    return MemorySource::read(k, wanted);
+  }
+};
+
+TEST(MeanDiameterOf, PassesOverBadFramesWhereTheInputSaysSo) {
+  BadFirstFrame source({grains(0, {7}), grains(1, {1, 2})});
+  Pipeline pipeline;
+  EXPECT_THROW(mean_diameter_of(pipeline, source), InputError);
+  pipeline.input.on_error = OnError::skip_frame;
+  EXPECT_EQ(mean_diameter_of(pipeline, source), 3);
+  BadFirstFrame alone({grains(0, {7})});
+  EXPECT_THROW(mean_diameter_of(pipeline, alone), InputError);
 }
 
 }  // namespace

@@ -58,6 +58,28 @@ TEST(Tune, RefusedSettingsAreReported) {
   EXPECT_TRUE(report.trials.at(2).refused.empty());
 }
 
+TEST(Tune, IsPlannedAsItRuns) {
+  TuneRequest r = request("phi,frames");
+  r.knobs = {{"lattice.voxel", {"0.3e-3", "0.8e-3"}}};
+  const auto source = open_dumps(shear_cell_input());
+  const std::size_t frames_read = source->counters().frames_read;
+  const TunePlan plan = plan_tuning(r, *source);
+  EXPECT_EQ(source->counters().frames_read, frames_read) << "nothing is computed";
+  EXPECT_EQ(plan.runs, 1U + 3);
+  EXPECT_THAT(plan.not_compared, ElementsAre("frames"));
+  ASSERT_EQ(plan.settings.size(), 3U);
+  const TuneReport report = tune(r, *source);
+  EXPECT_EQ(plan.reference, report.reference);
+  EXPECT_EQ(plan.fields, report.fields);
+  for (std::size_t n = 0; n < 3; ++n) {
+    EXPECT_EQ(plan.settings[n].set, report.trials[n].set);
+    EXPECT_EQ(plan.settings[n].refused, report.trials[n].refused);
+  }
+  EXPECT_THAT(describe(plan), HasSubstr("lattice.voxel=0.3e-3: not possible: "));
+  r.reference = {"lattice.voxel=0.3e-3"};
+  EXPECT_THROW(plan_tuning(r, *source), ConfigError);
+}
+
 // Of the other knobs: closed form and double are what the reference has, float errs more than shifted.
 TEST(Tune, LineIntegralsAndSums) {
   TuneRequest r = request("phi,contact_stress");
