@@ -15,6 +15,14 @@ void NearLists::join(std::int32_t i, std::int32_t j) {
   add(j, i);
 }
 
+void NearLists::set(std::int32_t i, std::span<const std::int32_t> neighbours) {
+  std::int32_t& count = counts_[static_cast<std::size_t>(i)];
+  const std::int32_t before = std::exchange(count, 0);
+  for (const std::int32_t j : neighbours)
+    if (j != i) add(i, j);
+  for (std::int32_t k = count; k < before; ++k) member(i, k) = i;
+}
+
 void NearLists::forget(std::int32_t i) {
   std::int32_t& count = counts_[static_cast<std::size_t>(i)];
   for (std::int32_t k = 0; k < count; ++k) {

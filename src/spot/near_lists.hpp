@@ -1,7 +1,8 @@
 #pragma once
-/// Who is near whom: for each place the places of its neighbours. Lists are mutual.
+/// Who is near whom: for each place the places of its neighbours. Lists that are joined are mutual.
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "spot/push_kernel.hpp"
@@ -16,6 +17,8 @@ class NearLists {
 
   /// Puts two particles into each other's list, in which they are not yet.
   void join(std::int32_t i, std::int32_t j);
+  /// Makes a particle's own list, of all these but itself, and no one else's.
+  void set(std::int32_t i, std::span<const std::int32_t> neighbours);
   /// Takes a particle out of all lists, and empties its own.
   void forget(std::int32_t i);
   /// Place c * before + k becomes c * after + k, for k < before ≤ after; others are new, with empty lists.

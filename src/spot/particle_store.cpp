@@ -8,7 +8,6 @@
 namespace grainvdb::spot {
 namespace {
 
-constexpr double skin_in_diameters = 0.12;
 // Beyond walls there is room for the grains that are pushed there, and for those that fall through the floor.
 constexpr double margin_in_diameters = 2;
 constexpr double cell_in_diameters = 2;
@@ -16,6 +15,8 @@ constexpr double cell_in_diameters = 2;
 constexpr std::size_t first_capacity = 16;
 // Kernels write registers in full.
 constexpr std::size_t spare = 16;
+// Of lists that are made on request: more than what single precision loses.
+constexpr double least_skin_in_diameters = 1e-3;
 // Distances are compared in single precision: a particle counts that is farther away by some 1e-6 of the radius.
 constexpr double slack_in_diameters = 1e-5;
 // As a distance, a mark must be nothing where a particle is, and beyond every radius where a place is empty.
@@ -37,8 +38,12 @@ std::size_t index(std::int32_t i) {
 
 }  // namespace
 
-ParticleStore::ParticleStore(const Box& box, const Packing& packing, Neighbours neighbours, const Floor& floor)
-    : box_(box), diameter_(packing.diameter), neighbours_(neighbours), skin_(skin_in_diameters * packing.diameter) {
+ParticleStore::ParticleStore(const Box& box, const Packing& packing, Neighbours neighbours, const Floor& floor,
+                             double skin_in_diameters)
+    : box_(box),
+      diameter_(packing.diameter),
+      neighbours_(neighbours),
+      skin_(packing.diameter * (neighbours == Neighbours::listed ? skin_in_diameters : least_skin_in_diameters)) {
   set_scales(floor);
   make_cells();
   std::vector<Mover> particles;
@@ -182,6 +187,11 @@ std::size_t ParticleStore::move_and_mark(const Site& centre, const Radii& radii,
   return moved;
 }
 
+void ParticleStore::list_zone() {
+  if (neighbours_ != Neighbours::listed_on_request) return;
+  for (const std::int32_t i : zone_) near_.set(i, find(site(i), diameter_ + skin_));
+}
+
 void ParticleStore::move_zone(std::span<const Site> displacements) {
   move_each(zone_, displacements);
   zone_.clear();
@@ -222,9 +232,9 @@ void ParticleStore::fill(std::vector<Mover> particles) {
   size_ = layers_in_use_ = 0;
   sites_.clear();
   resize_places();
-  near_.reset(neighbours_ == Neighbours::listed ? sites_.size() : 0);
+  near_.reset(neighbours_ == Neighbours::none ? 0 : sites_.size());
   for (const Mover& p : particles) put(p.site, p.id);
-  if (neighbours_ == Neighbours::none) return;
+  if (neighbours_ != Neighbours::listed) return;
   listed_at_ = sites_;
   cells_.listed_at = listed_at_.data();
   for (const std::int32_t i : places())
@@ -241,12 +251,13 @@ void ParticleStore::resize_places() {
     sites_[i] = middles_[i / cells_.capacity];
     sites_[i].mark = Site::empty;
   }
-  if (neighbours_ == Neighbours::listed) {
+  if (neighbours_ != Neighbours::none) {
+    // The middles of cells; where no lists are kept it stays so.
     listed_at_.resize(after);
     std::copy(sites_.begin() + static_cast<std::ptrdiff_t>(before), sites_.end(),
               listed_at_.begin() + static_cast<std::ptrdiff_t>(before));
-    cells_.listed_at = listed_at_.data();
   }
+  if (neighbours_ == Neighbours::listed) cells_.listed_at = listed_at_.data();
   cells_.sites = sites_.data();
   for (std::vector<std::int32_t>* list : {&found_, &away_, &marked_}) list->resize(after + spare);
 }
@@ -307,6 +318,7 @@ void ParticleStore::widen_cells() {
   }
   for (std::size_t i = 0; i < listed_at.size(); ++i) listed_at_[widened(i)] = listed_at[i];
   if (neighbours_ == Neighbours::listed) near_.widen_cells(before, after);
+  if (neighbours_ == Neighbours::listed_on_request) near_.reset(sites_.size());
   for (std::vector<std::int32_t>* list : {&zone_, &renewed_})
     for (std::int32_t& i : *list) i = static_cast<std::int32_t>(widened(index(i)));
   for (Mover& m : movers_) m.from = static_cast<std::int32_t>(widened(index(m.from)));
@@ -329,7 +341,7 @@ void ParticleStore::settle(std::span<const std::int32_t> away, const MoveLimits&
     }
   }
   change_cells();
-  if (neighbours_ == Neighbours::none) return;
+  if (neighbours_ != Neighbours::listed) return;
   for (const std::int32_t i : renewed_) listed_at_[index(i)] = site(i);
   for (const std::int32_t i : renewed_) list_neighbours(i);
 }

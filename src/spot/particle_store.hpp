@@ -33,14 +33,17 @@ struct Radii {
 
 /// Particles lie in memory by cells, so that a sweep over those near a point reads memory in order; each has a place,
 /// which it leaves only for another cell. Its cell and its list of neighbours are renewed when it has moved by a share
-/// of the lists' skin; without lists, when it has left the cell. A sweep and a relaxation cost the same in a packing of
-/// any size.
+/// of the lists' skin; where no lists are kept, its cell when it has left it. A sweep and a relaxation cost the same in
+/// a packing of any size.
 ///
-/// Lists are mutual and hold every pair nearer than diameter + skin when the later of its two lists was made. Each then
-/// moves by at most skin/3 from where its own list was made, so that the pair comes nearer by at most skin.
+/// Lists that are kept are mutual and hold every pair nearer than diameter + skin when the later of its two lists was
+/// made. Each then moves by at most skin/3 from where its own list was made, so that the pair comes nearer by at most
+/// skin.
 class ParticleStore {
  public:
-  enum class Neighbours { none, listed };
+  /// Whether there are lists of neighbours: kept for all particles, or made for those of the zone when they are to be
+  /// pushed, which costs less where that is rare.
+  enum class Neighbours { none, listed, listed_on_request };
   /// Per axis [counts].
   struct Bounds {
     std::array<std::int32_t, 3> lowest{}, highest{};
@@ -52,8 +55,10 @@ class ParticleStore {
   };
 
   /// Centres beyond a wall are put on it. Periodic lengths must be at least four diameters; the caller checks that.
-  /// Memory: about 400 bytes per (2 diameters)³ of the box, 1900 with lists.
-  ParticleStore(const Box& box, const Packing& packing, Neighbours neighbours, const Floor& floor = {});
+  /// The skin, of lists that are kept, changes what a run costs and not what becomes of the particles.
+  /// Memory: about 400 bytes per (2 diameters)³ of the box, 1900 and more with lists.
+  ParticleStore(const Box& box, const Packing& packing, Neighbours neighbours, const Floor& floor = {},
+                double skin_in_diameters = 0.12);
 
   /// Places, most of which hold a particle.
   std::size_t slots() const { return sites_.size(); }
@@ -77,7 +82,7 @@ class ParticleStore {
 
   /// The places of the particles within a ball. Valid until the next call.
   std::span<const std::int32_t> find(const Site& centre, double radius);
-  /// Who may touch whom; empty without lists.
+  /// Who may touch whom; empty without lists. Where they are made on request, those of the zone.
   NearView near() const { return near_.view(); }
 
   /// Moves the particles within a radius by the same whole counts, and returns how many there are. Beyond a wall they
@@ -88,6 +93,8 @@ class ParticleStore {
   std::size_t move_and_mark(const Site& centre, const Radii& radii, const Site& displacement);
   /// The places of the marked particles; valid until the next call that moves some.
   std::span<const std::int32_t> zone() const { return zone_; }
+  /// Makes the lists of the marked particles, where none are kept.
+  void list_zone();
   /// Moves each particle of the zone by its own counts, and ends the zone. Those beyond the exit leave.
   void move_zone(std::span<const Site> displacements);
   /// The same for any particles. Only with lists.

@@ -296,7 +296,8 @@ std::size_t MoveWithin(const CellView& cells, Ball& ball, const Passage& passage
 }
 std::size_t MoveAndMark(const CellView& cells, Ball& ball, const Passage& passage, const MoveLimits& limits,
                         Lists& lists) {
-  return sweep_limited<true, true>(cells, ball, passage, limits, lists);
+  return cells.listed_at != nullptr ? sweep_limited<true, true>(cells, ball, passage, limits, lists)
+                                    : sweep_limited<true, false>(cells, ball, passage, limits, lists);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "spot/particle_store.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -20,25 +21,29 @@ double distance(const ParticleStore& store, std::int32_t i, std::int32_t j) {
   return std::sqrt(r2);
 }
 
+constexpr std::array every_kind{ParticleStore::Neighbours::none, ParticleStore::Neighbours::listed,
+                                ParticleStore::Neighbours::listed_on_request};
+
+// Whoever overlaps a particle is in its list.
+void expect_complete_list(const ParticleStore& store, std::int32_t i) {
+  const NearView near = store.near();
+  std::set<std::int32_t> listed;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(near.counts[i]); ++k)
+    listed.insert(near.at(static_cast<std::size_t>(i), k));
+  EXPECT_EQ(listed.size(), static_cast<std::size_t>(near.counts[i]));
+  EXPECT_FALSE(listed.contains(i));
+  for (const std::int32_t j : store.places())
+    if (j != i && distance(store, i, j) < store.diameter()) {
+      EXPECT_TRUE(listed.contains(j)) << i << ' ' << j;
+    }
+  for (const std::int32_t j : listed) EXPECT_TRUE(store.holds(j));
+  for (std::size_t k = static_cast<std::size_t>(near.counts[i]); k % NearView::group != 0; ++k)
+    EXPECT_EQ(near.at(static_cast<std::size_t>(i), k), i);
+}
+
 // Every pair that overlaps is in both lists, however the particles have moved.
 void expect_complete_lists(const ParticleStore& store) {
-  const NearView near = store.near();
-  const auto n = static_cast<std::int32_t>(store.slots());
-  for (std::int32_t i = 0; i < n; ++i) {
-    if (!store.holds(i)) continue;
-    std::set<std::int32_t> listed;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(near.counts[i]); ++k)
-      listed.insert(near.at(static_cast<std::size_t>(i), k));
-    EXPECT_EQ(listed.size(), static_cast<std::size_t>(near.counts[i]));
-    EXPECT_FALSE(listed.contains(i));
-    for (std::int32_t j = 0; j < n; ++j)
-      if (j != i && store.holds(j) && distance(store, i, j) < store.diameter()) {
-        EXPECT_TRUE(listed.contains(j)) << i << ' ' << j;
-      }
-    for (const std::int32_t j : listed) EXPECT_TRUE(store.holds(j));
-    for (std::size_t k = static_cast<std::size_t>(near.counts[i]); k % NearView::group != 0; ++k)
-      EXPECT_EQ(near.at(static_cast<std::size_t>(i), k), i);
-  }
+  for (const std::int32_t i : store.places()) expect_complete_list(store, i);
 }
 
 TEST(ParticleStore, ListsStayCompleteWhileParticlesMoveAndGo) {
@@ -81,6 +86,26 @@ TEST(ParticleStore, ListsStayCompleteWhileSpotsPass) {
   }
 }
 
+TEST(ParticleStore, ListsOnRequestAreThoseOfTheZone) {
+  const Box box{{0, 0, 0}, {9, 8, 10}, {true, false, false}};
+  ParticleStore store(box, poisson_packing(box, 0.55, 1, 6), ParticleStore::Neighbours::listed_on_request);
+  testing::Random random(7);
+  for (int round = 0; round < 200; ++round) {
+    Site step;
+    for (std::size_t a = 0; a < 3; ++a)
+      step.at[a] = static_cast<std::int32_t>(random.uniform(-0.3, 0.3) / store.unit()[a]);
+    const Site centre = store.site_at({random.uniform(0, 9), random.uniform(0, 8), random.uniform(0, 10)});
+    store.move_and_mark(centre, {2, 3}, step);
+    if (round % 20 == 19) {
+      store.list_zone();
+      EXPECT_GT(store.zone().size(), 20U);
+      for (const std::int32_t i : store.zone()) expect_complete_list(store, i);
+    }
+    store.move_zone(std::vector<Site>(store.zone().size()));
+    for (const std::int32_t i : store.places()) EXPECT_EQ(store.site(i).mark, 0);
+  }
+}
+
 // Where particles are by their ids, kept beside the store in the plainest way.
 using Places = std::map<std::int64_t, Site>;
 Places places_of(const ParticleStore& store) {
@@ -102,7 +127,7 @@ std::size_t count_within(const ParticleStore& store, const Site& centre, double 
 
 TEST(ParticleStore, FindsParticlesThatHaveLeftTheirFirstCell) {
   const Box box{{0, 0, 0}, {8, 8, 8}, {true, true, false}};
-  for (const auto neighbours : {ParticleStore::Neighbours::none, ParticleStore::Neighbours::listed}) {
+  for (const auto neighbours : every_kind) {
     ParticleStore store(box, poisson_packing(box, 0.5, 1, 3), neighbours);
     testing::Random random(4);
     Site step;
@@ -125,7 +150,7 @@ TEST(ParticleStore, FindsParticlesThatHaveLeftTheirFirstCell) {
 TEST(ParticleStore, CellsHoldAnyNumberOfParticles) {
   const Box box{{0, 0, 0}, {8, 8, 8}, {false, false, false}};
   const Packing packing = poisson_packing(box, 0.2, 1, 8);
-  for (const auto neighbours : {ParticleStore::Neighbours::none, ParticleStore::Neighbours::listed}) {
+  for (const auto neighbours : every_kind) {
     ParticleStore store(box, packing, neighbours);
     Site step;
     for (std::size_t a = 0; a < 3; ++a) step.at[a] = -static_cast<std::int32_t>(0.5 / store.unit()[a]);
@@ -168,7 +193,7 @@ TEST(ParticleStore, KeepsCentresBetweenWallsAndIdsThroughCompaction) {
 TEST(ParticleStore, ParticlesLeaveBelowTheExit) {
   const Box box{{0, 0, 0}, {8, 8, 8}, {true, true, false}};
   const Packing packing = poisson_packing(box, 0.5, 1, 9);
-  for (const auto neighbours : {ParticleStore::Neighbours::none, ParticleStore::Neighbours::listed}) {
+  for (const auto neighbours : every_kind) {
     ParticleStore store(box, packing, neighbours, {1.8, 0.5});
     const Places before = places_of(store);
     Site step;

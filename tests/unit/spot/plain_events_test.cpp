@@ -173,7 +173,8 @@ const Container& periodic() {
 INSTANTIATE_TEST_SUITE_P(Runs, EveryEvent,
                          ::testing::Values(Case{"Walls", walls(), 0}, Case{"WallsRelaxed", walls(), 1},
                                            Case{"WallsRelaxedEveryThird", walls(), 3}, Case{"Periodic", periodic(), 0},
-                                           Case{"PeriodicRelaxed", periodic(), 1}),
+                                           Case{"PeriodicRelaxed", periodic(), 1},
+                                           Case{"PeriodicRelaxedEverySecond", periodic(), 2}),
                          [](const auto& param) { return std::string(param.param.name); });
 
 }  // namespace
