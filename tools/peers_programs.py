@@ -140,6 +140,6 @@ class NDDEM:
     def fields(self):
         with np.load(self._folder / "nddem.npz") as result:
             read = {name: result[name] for name in result}
-        vector, tensor = (lambda name: np.moveaxis(read[name], 0, -1)), (lambda name: np.moveaxis(read[name], (0, 1), (-1, -2)))
+        vector, tensor = (lambda name: np.moveaxis(read[name], 0, -1)), (lambda name: np.moveaxis(read[name], (0, 1), (-2, -1)))
         return {"phi": read["RHO"] / DENSITY, "momentum": read["RHO"][..., None] * vector("VAVG"), "contact_stress": -tensor("TC"),
                 "kinetic_stress": -tensor("TK")}
