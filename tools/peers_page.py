@@ -38,10 +38,10 @@ def periodic_text(figures):
 
 
 def speed_table(rows, theirs, *ours):
-    """A row for each job that the other program did; the ratio is to the first of ours."""
+    """A row for each job that all of them did; the ratio is to the first of ours."""
     lines = []
     for _, row in sorted(rows.items()):
-        if theirs in row:
+        if {theirs, *ours} <= row.keys():
             lines.append([f"{row['grains']}", f"{row['voxel']:g}", f"{row['points']}", *(f"{row[name][0]:.2f} s" for name in (*ours, theirs)),
                           f"{row[theirs][0] / row[ours[0]][0]:.1f}", f"{row[ours[0]][1]:.0f}, {row[theirs][1]:.0f} MB"])
     return table(["grains", "h/d", "points", *(name.removesuffix(" as NDDEM") for name in (*ours, theirs)), "ratio", "memory"], lines)
