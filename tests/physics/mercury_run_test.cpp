@@ -1,5 +1,5 @@
 // Files that MercuryDPM wrote itself: what it says of forces, and what its MercuryCG makes of the same files.
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
