@@ -61,6 +61,27 @@ ContactDumps contact_dumps(FrameSource& source, std::vector<std::string> columns
   }
 }
 
+bool knows_wall_contacts(FrameSource& source) {
+  try {
+    source.require(0, Column::wall_contacts);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+// Contacts with walls may stand among those of grains, as in .fstat files of MercuryDPM, which then are named for both:
+// without them stresses lack the share of the walls.
+InputSpec with_wall_contacts(const InputSpec& input) {
+  if (input.contacts.files.empty() || !input.wall_contacts.files.empty()) return input;
+  InputSpec both = input;
+  both.wall_contacts.files = input.contacts.files;
+  const auto source = open_dumps(both);
+  if (!knows_wall_contacts(*source)) return input;
+  const std::size_t last = source->frames().size() - 1;
+  return source->read(last, Column::wall_contacts).wall_contacts.size() > 0 ? both : input;
+}
+
 // What the command line says of columns has to fit the dumps.
 void require_named(FrameSource& source, const InputSpec& input) {
   if (!input.contacts.compute.empty() || !input.contacts.columns.empty()) source.require(0, Column::contacts);
@@ -134,16 +155,17 @@ void sort_fields(Draft& draft, const fs::path& file, FrameSource& source) {
 
 void init(const InitOptions& options) {
   refuse_to_replace(options.file);
-  const auto source = open_dumps(options.input);
-  require_named(*source, options.input);
+  const InputSpec input = with_wall_contacts(options.input);
+  const auto source = open_dumps(input);
+  require_named(*source, input);
   const FrameInfo& last = source->frames().back();
   const fs::path file = fs::absolute(options.file).lexically_normal();
 
   Draft draft;
-  draft.input = options.input;
-  draft.input.particles = relative_to(file.parent_path(), options.input.particles);
-  draft.input.contacts.files = relative_to(file.parent_path(), options.input.contacts.files);
-  draft.input.wall_contacts.files = relative_to(file.parent_path(), options.input.wall_contacts.files);
+  draft.input = input;
+  draft.input.particles = relative_to(file.parent_path(), input.particles);
+  draft.input.contacts.files = relative_to(file.parent_path(), input.contacts.files);
+  draft.input.wall_contacts.files = relative_to(file.parent_path(), input.wall_contacts.files);
   draft.command = options.file;
   draft.contacts = contact_dumps(*source, source->contact_columns(), Column::contacts);
   draft.wall_contacts = contact_dumps(*source, source->wall_contact_columns(), Column::wall_contacts);

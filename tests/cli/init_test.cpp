@@ -176,6 +176,30 @@ TEST(Init, TakesContactsWithWalls) {
   EXPECT_EQ(run_command({"validate", "unknown.yaml"}, folder.path()).exit_code, 0);
 }
 
+TEST(Init, TakesContactsWithWallsThatStandAmongTheOthers) {
+  const Folder folder;
+  const std::string sample = in_repository("sample_dumps/formats/");
+  const auto init = [&](const std::string& name, const std::string& file) {
+    return run_command({"init", sample + name + ".data", "--contacts", sample + name + ".fstat", "--periodic", "none",
+                        "--density", "2.5", "-o", file},
+                       folder.path());
+  };
+  ASSERT_EQ(init("settled", "walls.yaml").exit_code, 0);
+  EXPECT_THAT(read_file(folder / "walls.yaml"), HasSubstr("  wall_contacts:       # with walls that are no grains; "
+                                                          "stresses take them in\n    files: \"" +
+                                                          sample + "settled.fstat\"\n"));
+  EXPECT_EQ(run_command({"validate", "walls.yaml"}, folder.path()).exit_code, 0);
+
+  std::string pairs = "# 80 1\n# 0 0 0 2.4 2.4 6\n# 0 0 0 0 0 0\n";
+  folder.write("none.fstat", pairs + "80 0 1 0 0 0 0.01 0 2 0 1 0 0 0 0 0\n80 1 0 0 0 0 0.01 0 2 0 -1 0 0 0 0 0\n");
+  folder.write("none.data", "2 80 0 0 0 2.4 2.4 6\n1 1 1 0 0 0 0.5 0 0 0 0 0 0 0\n0.1 1 1 0 0 0 0.5 0 0 0 0 0 0 0\n");
+  const CommandResult none = run_command(
+      {"init", "none.data", "--contacts", "none.fstat", "--periodic", "none", "--density", "2.5", "-o", "none.yaml"},
+      folder.path());
+  ASSERT_EQ(none.exit_code, 0) << none.err;
+  EXPECT_THAT(read_file(folder / "none.yaml"), Not(HasSubstr("wall_contacts")));
+}
+
 TEST(Init, RefusesWhatItCannotDo) {
   const Folder folder;
   write_dumps(folder);
