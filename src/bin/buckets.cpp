@@ -44,12 +44,16 @@ Images images(const Lattice& lattice, int axis, double x, double reach) {
           static_cast<std::int64_t>(std::floor((period->first + n - 1 + reach - u) / n))};
 }
 
-// Origin of the leaf cell of the voxel that holds index position u.
-std::int32_t cell(double u) {
+// The voxel that holds index position u.
+std::int32_t voxel(double u) {
   // What std::floor gives, which is a call where the processor has no instruction for it by default.
   const double x = u + 0.5;
   const auto toward_zero = static_cast<std::int32_t>(x);
-  return (toward_zero - (toward_zero > x ? 1 : 0)) & ~(leaf_edge - 1);
+  return toward_zero - (toward_zero > x ? 1 : 0);
+}
+// Origin of its leaf cell.
+std::int32_t cell(double u) {
+  return voxel(u) & ~(leaf_edge - 1);
 }
 
 using Order = std::vector<std::uint32_t>;
@@ -137,9 +141,11 @@ struct Axis {
     base = cell(least);
     count = static_cast<std::uint64_t>(std::int64_t{cell(greatest)} - base) / leaf_edge + 1;
   }
-  std::uint64_t number(const Image& image) const {
-    return static_cast<std::uint64_t>(std::int64_t{cell(image.index[axis])} - base) / leaf_edge;
+  // Of the half of a cell that holds an entry: twice its cell's number, and one in the upper half.
+  std::uint64_t half(const Image& image) const {
+    return static_cast<std::uint64_t>(std::int64_t{voxel(image.index[axis])} - base) / (leaf_edge / 2);
   }
+  std::uint64_t number(const Image& image) const { return half(image) / 2; }
   std::size_t axis;
   std::int64_t base = 0;
   std::uint64_t count = 0;
@@ -156,8 +162,8 @@ void counting_sort(std::size_t range, const Key& key, Order& order) {
   order.swap(sorted);
 }
 
-// The entries ordered by cell. One counting sort does where the cells are not many more than the entries; where
-// material is spread thinly, digits of 16 bits of one axis after the other keep the memory in proportion to the
+// The entries ordered by cell and eighth. One counting sort does where the cells are not many more than the entries;
+// where material is spread thinly, digits of 16 bits of one axis after the other keep the memory in proportion to the
 // entries.
 Order by_cell(const Unsorted& all) {
   Order order(all.count);
@@ -165,23 +171,43 @@ Order by_cell(const Unsorted& all) {
   const std::array<Axis, 3> axis{Axis(0, all), Axis(1, all), Axis(2, all)};
   const double cells =
       static_cast<double>(axis[0].count) * static_cast<double>(axis[1].count) * static_cast<double>(axis[2].count);
-  if (cells <= 1024 + 4.0 * static_cast<double>(order.size())) {
+  if (cells <= 128 + static_cast<double>(order.size())) {
     std::vector<std::uint32_t> number(order.size());
     parallel_for(number.size(), [&](std::size_t e) {
       const Image& image = all.image[e];
-      number[e] = static_cast<std::uint32_t>(
-          (axis[0].number(image) * axis[1].count + axis[1].number(image)) * axis[2].count + axis[2].number(image));
+      const std::array<std::uint64_t, 3> half{axis[0].half(image), axis[1].half(image), axis[2].half(image)};
+      const std::uint64_t cell_number = ((half[0] / 2) * axis[1].count + half[1] / 2) * axis[2].count + half[2] / 2;
+      number[e] = static_cast<std::uint32_t>(8 * cell_number + 4 * (half[0] % 2) + 2 * (half[1] % 2) + half[2] % 2);
     });
     counting_sort(
-        static_cast<std::size_t>(cells), [&](std::uint32_t e) { return number[e]; }, order);
+        8 * static_cast<std::size_t>(cells), [&](std::uint32_t e) { return number[e]; }, order);
     return order;
   }
+  const auto eighth = [&](std::uint32_t e) {
+    const Image& image = all.image[e];
+    return 4 * (axis[0].half(image) % 2) + 2 * (axis[1].half(image) % 2) + axis[2].half(image) % 2;
+  };
+  counting_sort(8, eighth, order);
   for (std::size_t a = 3; a-- > 0;)
     for (unsigned shift = 0; shift < 32 && ((axis[a].count - 1) >> shift) != 0; shift += 16)
       counting_sort(
           std::size_t{1} << 16, [&](std::uint32_t e) { return (axis[a].number(all.image[e]) >> shift) & 0xffff; },
           order);
   return order;
+}
+
+// Fills in where the eighths of the cells begin.
+void find_eighths(Buckets& b) {
+  b.eighth.assign(8 * b.cells.size() + 1, b.point.size());
+  parallel_for(b.cells.size(), [&](std::size_t i) {
+    std::array<std::size_t, 8> count{};
+    for (std::size_t e = b.start[i]; e < b.start[i + 1]; ++e) {
+      const auto upper = [&](std::size_t a) { return (static_cast<std::uint32_t>(voxel(b.index[a][e])) >> 2U) & 1U; };
+      ++count[4 * upper(0) + 2 * upper(1) + upper(2)];
+    }
+    std::size_t begin = b.start[i];
+    for (std::size_t n = 0; n < 8; begin += count[n++]) b.eighth[8 * i + n] = begin;
+  });
 }
 
 }  // namespace
@@ -192,6 +218,7 @@ Buckets bin_points(const Lattice& lattice, const Columns3& position, double reac
 
   Buckets b;
   b.start.push_back(0);
+  b.eighth.push_back(0);
   if (position[0].empty()) return b;
   const double voxels = reach / lattice.voxel();
   const std::optional<Region> cells = wanted == nullptr ? std::nullopt : std::optional(wanted->grown(voxels));
@@ -220,6 +247,7 @@ Buckets bin_points(const Lattice& lattice, const Columns3& position, double reac
     if (k > 0) b.start.push_back(k);
   }
   b.start.push_back(entries);
+  find_eighths(b);
   return b;
 }
 
@@ -245,6 +273,7 @@ Buckets keep_points(const Buckets& all, std::span<const int> number, int wanted)
     some.start.push_back(some.point.size());
   }
   for (auto& column : some.local) column.resize(some.point.size() + Buckets::padding);
+  find_eighths(some);
   return some;
 }
 

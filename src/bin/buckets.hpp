@@ -12,11 +12,15 @@
 
 namespace grainvdb {
 
-/// Entries of one leaf-sized cell are contiguous: cell i holds entries start[i] … start[i+1]-1, in ascending order of
-/// their point's index, so that sums do not depend on threads or on the order of rows in the dump.
+/// Entries of one leaf-sized cell are contiguous: cell i holds entries start[i] … start[i+1]-1. Those of each eighth of
+/// it are, too, in ascending order of their point's index, so that sums do not depend on threads or on the order of rows
+/// in the dump.
 struct Buckets {
   std::vector<Coord> cells;          ///< leaf origins, ascending
   std::vector<std::size_t> start;    ///< cells.size() + 1 offsets
+  /// 8 cells.size() + 1 offsets: eighth n = 4 x + 2 y + z of cell i, x, y, z = 1 in the upper half along an axis, begins
+  /// at eighth[8 i + n].
+  std::vector<std::size_t> eighth;
   std::vector<std::uint32_t> point;  ///< index of the point that each entry is an image of
   Columns3 index;                    ///< position of each entry in index space (whole numbers are voxel centres)
   /// The same in single precision, relative to the centre of the cell (origin + 3½); followed by `padding` zeros.

@@ -140,6 +140,20 @@ HWY_EXPORT(Cover);
 
 namespace {
 
+// Whether an eighth of a cell may hold a point within `cutoff` (in voxels) of the box of a leaf's voxel centres.
+bool in_reach(const Coord& cell, std::size_t eighth, const Coord& leaf, double cutoff) {
+  double apart2 = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double low = cell[a] - leaf[a] + (((eighth >> (2 - a)) & 1U) != 0 ? 3.5 : -0.5);
+    const double apart = std::max({0.0, low - (leaf_edge - 1), -(low + 4)});
+    apart2 += apart * apart;
+  }
+  return apart2 <= cutoff * cutoff * (1 + 1e-5);  // more than the margin of single precision
+}
+
+// Of so few entries it takes longer to leave some out.
+constexpr std::size_t few_in_cell = 128;
+
 // Scans the cells listed in `out`; those without candidates are dropped.
 void scan_cells(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCandidates& out) {
   std::size_t most = 0;
@@ -151,18 +165,31 @@ void scan_cells(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCa
   out.entry.room(most);
   const auto half = static_cast<float>(3.5 / cutoff);
   for (CellRange& range : out.cells) {
-    const std::size_t first = buckets.start[range.cell];
     const Coord& origin = buckets.cells[range.cell];
-    CellScan scan{buckets.local[0].data() + first,
-                  buckets.local[1].data() + first,
-                  buckets.local[2].data() + first,
-                  buckets.start[range.cell + 1] - first,
-                  static_cast<std::uint32_t>(first),
-                  static_cast<float>(1 / cutoff),
-                  {}};
+    CellScan scan{};
+    scan.scale = static_cast<float>(1 / cutoff);
     for (int a = 0; a < 3; ++a) scan.offset[a] = static_cast<float>((origin[a] - leaf[a]) / cutoff);
+    const auto scan_from = [&](std::size_t first, std::size_t end) {
+      scan.x = buckets.local[0].data() + first;
+      scan.y = buckets.local[1].data() + first;
+      scan.z = buckets.local[2].data() + first;
+      scan.count = end - first;
+      scan.first = static_cast<std::uint32_t>(first);
+      HWY_DYNAMIC_DISPATCH(ScanCell)(scan, half, out);
+    };
     range.begin = out.count;
-    HWY_DYNAMIC_DISPATCH(ScanCell)(scan, half, out);
+    if (buckets.start[range.cell + 1] - buckets.start[range.cell] < few_in_cell) {
+      scan_from(buckets.start[range.cell], buckets.start[range.cell + 1]);
+      range.end = out.count;
+      continue;
+    }
+    const std::size_t* const eighth = buckets.eighth.data() + 8 * range.cell;
+    for (std::size_t n = 0; n < 8;) {
+      std::size_t end = n;
+      while (end < 8 && in_reach(origin, end, leaf, cutoff)) ++end;
+      if (end > n && eighth[n] < eighth[end]) scan_from(eighth[n], eighth[end]);
+      n = end + 1;
+    }
     range.end = out.count;
   }
   std::erase_if(out.cells, [](const CellRange& range) { return range.begin == range.end; });

@@ -42,15 +42,23 @@ void expect_well_formed(const Buckets& b) {
   EXPECT_EQ(b.start.front(), 0u);
   EXPECT_EQ(b.start.back(), b.point.size());
   for (const auto& column : b.index) ASSERT_EQ(column.size(), b.point.size());
+  ASSERT_EQ(b.eighth.size(), 8 * b.cells.size() + 1);
+  EXPECT_EQ(b.eighth.back(), b.point.size());
   for (std::size_t c = 0; c < b.cells.size(); ++c) {
     EXPECT_TRUE(c == 0 || b.cells[c - 1] < b.cells[c]);
     EXPECT_LT(b.start[c], b.start[c + 1]);
     for (std::size_t e = b.start[c]; e < b.start[c + 1]; ++e) {
-      EXPECT_TRUE(e == b.start[c] || b.point[e - 1] <= b.point[e]);
       // The voxel that holds the entry belongs to the cell's leaf.
       const auto voxel = [&](std::size_t a) { return static_cast<std::int32_t>(std::floor(b.index[a][e] + 0.5)); };
       EXPECT_EQ(leaf_origin({voxel(0), voxel(1), voxel(2)}), b.cells[c]);
     }
+    EXPECT_EQ(b.eighth[8 * c], b.start[c]);
+    for (std::size_t n = 0; n < 8; ++n)
+      for (std::size_t e = b.eighth[8 * c + n]; e < b.eighth[8 * c + n + 1]; ++e) {
+        EXPECT_TRUE(e == b.eighth[8 * c + n] || b.point[e - 1] <= b.point[e]);
+        for (std::size_t a = 0; a < 3; ++a)
+          EXPECT_EQ(b.index[a][e] + 0.5 >= b.cells[c][static_cast<int>(a)] + 4, ((n >> (2 - a)) & 1U) == 1) << n;
+      }
   }
 }
 
