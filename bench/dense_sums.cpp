@@ -9,7 +9,8 @@
 
 namespace grainvdb::bench {
 
-DenseSums::DenseSums(const Columns3& position, double h, int channels) : channels_(static_cast<std::size_t>(channels)) {
+DenseSums::DenseSums(const Columns3& position, double h, int channels)
+    : h_(h), channels_(static_cast<std::size_t>(channels)) {
   openvdb::Coord lo, hi;
   for (int a = 0; a < 3; ++a) {
     const auto& x = position[static_cast<std::size_t>(a)];
@@ -52,10 +53,12 @@ double DenseSums::disagreement(const Grids& grids, const Tolerance& tolerance) c
   if (grids.size() != channels_) return std::numeric_limits<double>::infinity();
   for (std::size_t c = 0; c < channels_; ++c) {
     const auto accessor = grids[c]->getConstAccessor();
+    const openvdb::Coord first = grids[c]->transform().worldToIndexCellCentered({h_ / 2, h_ / 2, h_ / 2});
     std::size_t active = 0;
     for (auto voxel = box_.beginZYX(); voxel; ++voxel) {
-      const openvdb::Coord& p = *voxel;
-      const std::size_t v = at(p.x(), p.y(), p.z());
+      const openvdb::Coord& here = *voxel;
+      const std::size_t v = at(here.x(), here.y(), here.z());
+      const openvdb::Coord p = here + first;
       const bool reached = count_[v] > 0;
       const bool on = accessor.isValueOn(p);
       active += on ? 1 : 0;

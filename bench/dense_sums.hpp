@@ -35,6 +35,7 @@ class DenseSums {
 
  private:
   std::size_t at(int i, int j, int k) const;
+  double h_;
   openvdb::CoordBBox box_;
   std::size_t channels_;
   std::size_t terms_ = 0;

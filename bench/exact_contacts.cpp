@@ -68,6 +68,7 @@ Grids exact_contacts(const HalfBranches& branches, double h, std::span<const dou
   Grids grids;
   for (std::size_t c = 0; c < width; ++c) {
     grids.push_back(openvdb::FloatGrid::create());
+    grids.back()->setTransform(plain_transform(h));
     auto accessor = grids.back()->getAccessor();
     for (int i = lo[0]; i < lo[0] + size[0]; ++i)
       for (int j = lo[1]; j < lo[1] + size[1]; ++j)

@@ -10,6 +10,7 @@ Grids naive_splat(const Scene& scene, double h, std::span<const double> q, int c
   std::vector<openvdb::FloatGrid::Accessor> accessors;
   for (std::size_t c = 0; c < width; ++c) {
     grids.push_back(openvdb::FloatGrid::create());
+    grids.back()->setTransform(plain_transform(h));
     accessors.push_back(grids.back()->getAccessor());
   }
   for (std::size_t p = 0; p < scene.size(); ++p) {

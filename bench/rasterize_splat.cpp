@@ -178,8 +178,7 @@ class LucyTransfer : public Volumes {
 }  // namespace
 
 Grids rasterize_splat(const Scene& scene, double h) {
-  auto transform = vdb::math::Transform::createLinearTransform(h);
-  transform->postTranslate({h / 2, h / 2, h / 2});
+  const auto transform = plain_transform(h);
   const auto grid = make_points(scene, *transform);
 
   std::vector<vdb::FloatTree::Ptr> trees{leaves_in_reach(grid->tree(), static_cast<int>(std::ceil(cutoff / h)))};

@@ -19,26 +19,28 @@ using Leaf = Tree::LeafNodeType;
 
 /// A leaf whose values are not set.
 Leaf* make_leaf(const Coord& origin, const LeafMask& active, float background) {
-  auto* leaf = new Leaf(openvdb::PartialCreate(), openvdb::Coord(origin.x, origin.y, origin.z), background);
+  auto* leaf = new Leaf(openvdb::PartialCreate(), grid_index(origin), background);
   Leaf::NodeMaskType mask;
   for (unsigned w = 0; w < 8; ++w) mask.getWord<std::uint64_t>(w) = active.words[w];
   leaf->setValueMask(mask);
   return leaf;
 }
 
-openvdb::math::Transform::Ptr transform_of(const Lattice& lattice) {
+}  // namespace
+
+openvdb::math::Transform::Ptr grid_transform(const Lattice& lattice) {
   const double h = lattice.voxel();
-  const Vec3& o = lattice.origin();
+  const openvdb::Coord first = grid_index({0, 0, 0});
   auto transform = openvdb::math::Transform::createLinearTransform(h);
-  transform->postTranslate({o[0] + h / 2, o[1] + h / 2, o[2] + h / 2});
+  openvdb::Vec3d start;
+  for (int a = 0; a < 3; ++a) start[a] = lattice.origin()[a] + h * (0.5 - first[a]);
+  transform->postTranslate(start);
   return transform;
 }
 
-}  // namespace
-
 SparseField SparseField::unset(FieldMeta meta, std::shared_ptr<const Topology> topology, const Lattice& lattice) {
   SparseField field(std::move(meta), std::move(topology));
-  const auto transform = transform_of(lattice);
+  const auto transform = grid_transform(lattice);
   const float background = field.meta_.background;
   field.grids_->components.resize(field.components_());
   parallel_for(field.components_(), [&](std::size_t c) {
@@ -86,12 +88,12 @@ void SparseField::change_units(double size, std::string unit, const Lattice& lat
                      [size](float value) { return static_cast<float>(static_cast<double>(value) / size); });
     });
   meta_.unit = std::move(unit);
-  const auto transform = transform_of(lattice);
+  const auto transform = grid_transform(lattice);
   for (const auto& grid : grids_->components) grid->setTransform(transform->copy());
 }
 
 float SparseField::value(const Coord& c, int component) const {
-  return grids_->components.at(static_cast<std::size_t>(component))->tree().getValue(openvdb::Coord(c.x, c.y, c.z));
+  return grids_->components.at(static_cast<std::size_t>(component))->tree().getValue(grid_index(c));
 }
 
 }  // namespace grainvdb

@@ -14,10 +14,6 @@ namespace {
 using openvdb::MetaMap;
 using openvdb::StringMetadata;
 
-openvdb::Coord to_openvdb(const Coord& c) {
-  return {c.x, c.y, c.z};
-}
-
 MetaMap field_metadata(const FieldMeta& meta, const MetaMap& common) {
   MetaMap all(common);
   all.insertMeta("unit", StringMetadata(meta.unit));
@@ -41,7 +37,7 @@ openvdb::GridBase::ConstPtr vector_grid(const SparseField& field, const MetaMap&
   const auto tree = std::make_shared<openvdb::Vec3STree>(x.tree(), background, openvdb::TopologyCopy());
   const Topology& topology = *field.topology();
   for (std::size_t l = 0; l < topology.leaf_count(); ++l) {
-    auto& leaf = *tree->probeLeaf(to_openvdb(topology.origin(l)));
+    auto& leaf = *tree->probeLeaf(grid_index(topology.origin(l)));
     topology.mask(l).for_each([&](int offset) {
       leaf.setValueOnly(static_cast<openvdb::Index>(offset),
                         {field.leaf(l, 0)[offset], field.leaf(l, 1)[offset], field.leaf(l, 2)[offset]});
@@ -82,7 +78,7 @@ openvdb::GridBase::ConstPtr make_mask_grid(const Mask& mask, const Lattice& latt
   const Topology& topology = *mask.topology();
   openvdb::tree::ValueAccessor<openvdb::Int32Tree> accessor(*tree);
   for (std::size_t l = 0; l < topology.leaf_count(); ++l) {
-    auto& leaf = *accessor.touchLeaf(to_openvdb(topology.origin(l)));
+    auto& leaf = *accessor.touchLeaf(grid_index(topology.origin(l)));
     topology.mask(l).for_each([&](int offset) {
       leaf.setValueOn(static_cast<openvdb::Index>(offset), static_cast<std::int32_t>(mask.leaf(l)[offset]));
     });
@@ -90,10 +86,7 @@ openvdb::GridBase::ConstPtr make_mask_grid(const Mask& mask, const Lattice& latt
   const auto grid = openvdb::Int32Grid::create(tree);
   for (auto it = metadata.beginMeta(); it != metadata.endMeta(); ++it) grid->insertMeta(it->first, *it->second);
   grid->setName(std::string(mask_name));
-  const double h = lattice.voxel();
-  const auto transform = openvdb::math::Transform::createLinearTransform(h);
-  transform->postTranslate({lattice.origin()[0] + h / 2, lattice.origin()[1] + h / 2, lattice.origin()[2] + h / 2});
-  grid->setTransform(transform);
+  grid->setTransform(grid_transform(lattice));
   grid->insertMeta("unit", StringMetadata("1"));
   grid->insertMeta("description", StringMetadata("why fields have no value: the sum of the flags that apply"));
   for (const ReasonInfo& r : reasons())

@@ -56,10 +56,10 @@ TEST(SparseField, GridsHaveTheTopologyAndTheLattice) {
   ASSERT_EQ(f.grids().components.size(), 3u);
   for (const auto& grid : f.grids().components) {
     EXPECT_EQ(grid->activeVoxelCount(), topology->active_voxel_count());
-    EXPECT_TRUE(grid->tree().isValueOn(openvdb::Coord(-1, 2, 3)));
-    EXPECT_FALSE(grid->tree().isValueOn(openvdb::Coord(-2, 2, 3)));
-    EXPECT_EQ(grid->indexToWorld(openvdb::Coord(0, 0, 0)), openvdb::Vec3d(1.25, 2.25, 3.25));
-    EXPECT_EQ(grid->indexToWorld(openvdb::Coord(2, 4, -6)), openvdb::Vec3d(2.25, 4.25, 0.25));
+    EXPECT_TRUE(grid->tree().isValueOn(grid_index({-1, 2, 3})));
+    EXPECT_FALSE(grid->tree().isValueOn(grid_index({-2, 2, 3})));
+    EXPECT_EQ(grid->indexToWorld(grid_index({0, 0, 0})), openvdb::Vec3d(1.25, 2.25, 3.25));
+    EXPECT_EQ(grid->indexToWorld(grid_index({2, 4, -6})), openvdb::Vec3d(2.25, 4.25, 0.25));
     EXPECT_EQ(grid->getName(), "velocity");
   }
 }
@@ -75,7 +75,7 @@ TEST(SparseField, GoesOverToAnotherUnitInDoublePrecision) {
   EXPECT_TRUE(std::isnan(f.value({0, 0, 0}, 1)));
   EXPECT_EQ(f.meta().unit, "sqrt(g d)");
   for (const auto& grid : f.grids().components)
-    EXPECT_EQ(grid->indexToWorld(openvdb::Coord(2, 4, -6)), openvdb::Vec3d(1.125, 2.125, 0.125));
+    EXPECT_EQ(grid->indexToWorld(grid_index({2, 4, -6})), openvdb::Vec3d(1.125, 2.125, 0.125));
 }
 
 TEST(SparseField, RefusesUnitsThatWouldChangeItsBackground) {

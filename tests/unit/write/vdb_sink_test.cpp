@@ -6,6 +6,7 @@
 #include <openvdb/openvdb.h>
 
 #include "grainvdb/error.hpp"
+#include "grainvdb/grids.hpp"
 #include "unit/write/support.hpp"
 
 namespace grainvdb::vdb_sink_test {
@@ -44,7 +45,7 @@ bool same(float a, float b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 openvdb::Coord at(const Coord& c) {
-  return {c.x, c.y, c.z};
+  return grid_index(c);
 }
 
 /// Compares values and active states, a margin of one leaf around the box included.
@@ -107,7 +108,7 @@ TEST(VdbSink, PutsVoxelCentresWhereTheLatticeHasThem) {
   write_scene(scene, folder.path());
   const Content content(folder / "fields.vdb");
   for (const auto& [name, grid] : content.grids) {
-    const openvdb::Vec3d centre = grid->indexToWorld(openvdb::Vec3d(-3, 2, 10));
+    const openvdb::Vec3d centre = grid->indexToWorld(grid_index({-3, 2, 10}));
     // origin + (i + ½) h with multiples of 1/8: exact
     EXPECT_EQ(centre, openvdb::Vec3d(1 - 2.5 * 0.25, 2 + 2.5 * 0.25, 3 + 10.5 * 0.25)) << name;
   }
