@@ -101,30 +101,44 @@ V NearestTo(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const floa
   return least;
 }
 
+/// All lanes of a brick as bits.
+constexpr std::uint32_t whole_brick = (1U << lanes) - 1U;
+
+/// Calls f for the bricks of a block that are not inside altogether.
+template <class F>
+HWY_INLINE void for_each_open_brick(const VoxelBox& box, const LeafMask& inside, const F& f) {
+  for (int x = box.x; x < box.x + box.edge; x += brick_x)
+    for (int y = box.y; y < box.y + box.edge; y += brick_y)
+      for (int z = box.z; z < box.z + box.edge; z += brick_z)
+        if (brick_bits(inside, {x, y, z}) != whole_brick) f(VoxelBox{x, y, z});
+}
+
 /// The candidates in the middle of the list lie in the leaf's own cell or near it: they cover most bricks of a leaf
-/// that is full of particles, and only the others need a search among all that are near.
+/// that is full of particles.
+void CoverSome(const LeafCandidates& all, float h, LeafMask& inside) {
+  constexpr std::size_t enough = 48;
+  const V sure = hn::Set(d, 1 - margin);
+  for_each_open_brick({0, 0, 0, 8}, inside, [&](const VoxelBox& brick) HWY_ATTR {
+    const V least = NearestTo(all.x.data(), all.y.data(), all.z.data(), all.count, all.count / 2,
+                              all.count < enough ? all.count : enough, brick_voxels(brick, h));
+    set_brick_bits(inside, brick, bits_of(d, hn::Lt(least, sure)));
+  });
+}
+
 void Cover(const LeafCandidates& all, float h, Picked& near, LeafMask& inside, LeafMask& perhaps) {
-  const std::size_t first_look = all.count < 48 ? all.count : 48;
   const V sure = hn::Set(d, 1 - margin), possible = hn::Set(d, 1 + margin);
-  for (int bx = 0; bx < 8; bx += block)
-    for (int by = 0; by < 8; by += block)
-      for (int bz = 0; bz < 8; bz += block) {
-        bool picked = false;
-        for (int x = bx; x < bx + block; x += brick_x)
-          for (int y = by; y < by + block; y += brick_y)
-            for (int z = bz; z < bz + block; z += brick_z) {
-              const Voxels at = brick_voxels({x, y, z}, h);
-              V least = NearestTo(all.x.data(), all.y.data(), all.z.data(), all.count, all.count / 2, first_look, at);
-              if (!hn::AllTrue(d, hn::Lt(least, sure))) {
-                if (!picked) PickNear(all, {bx, by, bz, block}, h, near);
-                picked = true;
-                least =
-                    NearestTo(near.x.data(), near.y.data(), near.z.data(), near.count, near.count / 2, near.count, at);
-              }
-              set_brick_bits(inside, {x, y, z}, bits_of(d, hn::Lt(least, sure)));
-              set_brick_bits(perhaps, {x, y, z}, bits_of(d, hn::Lt(least, possible)));
-            }
-      }
+  for (int b = 0; b < 8; ++b) {
+    const VoxelBox box{b / 4 * block, b / 2 % 2 * block, b % 2 * block, block};
+    bool picked = false;
+    for_each_open_brick(box, inside, [&](const VoxelBox& brick) HWY_ATTR {
+      if (!picked) PickNear(all, box, h, near);
+      picked = true;
+      const V least = NearestTo(near.x.data(), near.y.data(), near.z.data(), near.count, near.count / 2, near.count,
+                                brick_voxels(brick, h));
+      set_brick_bits(inside, brick, bits_of(d, hn::Lt(least, sure)));
+      set_brick_bits(perhaps, brick, bits_of(d, hn::Lt(least, possible)));
+    });
+  }
 }
 
 }  // namespace
@@ -136,6 +150,7 @@ HWY_AFTER_NAMESPACE();
 namespace grainvdb {
 HWY_EXPORT(ScanCell);
 HWY_EXPORT(PickNear);
+HWY_EXPORT(CoverSome);
 HWY_EXPORT(Cover);
 
 namespace {
@@ -209,6 +224,10 @@ void gather_own(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCa
   if (it != buckets.cells.end() && *it == leaf)
     out.cells.push_back({static_cast<std::size_t>(it - buckets.cells.begin()), 0, 0});
   scan_cells(buckets, leaf, cutoff, out);
+}
+
+void cover_some(const LeafCandidates& candidates, float voxel, LeafMask& inside) {
+  HWY_DYNAMIC_DISPATCH(CoverSome)(candidates, voxel, inside);
 }
 
 void cover(const LeafCandidates& candidates, float voxel, Picked& scratch, LeafMask& inside, LeafMask& perhaps) {

@@ -47,8 +47,11 @@ struct Picked {
 /// Picks those that may lie within the cutoff of a voxel of the box, in their order.
 void pick_near(const LeafCandidates& candidates, const VoxelBox& box, float voxel, Picked& out);
 
-/// Which of the leaf's voxels lie within the cutoff of a candidate for certain (`inside`), and which may, by the
-/// precision of the positions (`perhaps`, which includes the first). `voxel` is in units of the cutoff.
+/// Adds to `inside` voxels that certainly lie within the cutoff of a candidate: most that do, at little cost. `voxel`
+/// is in units of the cutoff.
+void cover_some(const LeafCandidates& candidates, float voxel, LeafMask& inside);
+
+/// The same for all that do, and to `perhaps` those that may be among them, by the precision of the positions.
 void cover(const LeafCandidates& candidates, float voxel, Picked& scratch, LeafMask& inside, LeafMask& perhaps);
 
 }  // namespace grainvdb

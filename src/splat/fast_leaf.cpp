@@ -62,9 +62,8 @@ void FastLeafSplat::scale(const LeafMask& active, const LeafWork& work, const To
   const double peak = kernel_.value(0) / summed_part;
   const auto row = [](std::size_t channel) { return static_cast<int>(1 + channel); };
   for (std::size_t c = 0; c < channels_; ++c) {
-    const std::size_t w = records_.weight(c);
-    scale_sums(work.sums.sums,
-               {row(c), peak * records_.scale(c), row(w), peak * records_.scale(w) * work.records.reference[c]}, active,
+    const std::size_t w = weight_[c];
+    scale_sums(work.sums.sums, {row(c), peak * scale_[c], row(w), peak * scale_[w] * work.records.reference[c]}, active,
                to(c));
   }
 }
@@ -80,9 +79,9 @@ void FastLeafSplat::sum_again(const Coord& origin, const DoubtfulBrick& brick, L
     sum_terms(work.terms, work.records.values.data(), records_.stride(), work.exact.data());
     for (std::size_t c = 0; c < channels_; ++c) {
       if ((brick.lanes[c] >> lane & 1U) == 0) continue;
-      const std::size_t w = records_.weight(c);
-      const double sum = records_.scale(c) * work.exact[c];
-      const double mean = work.records.reference[c] * records_.scale(w) * work.exact[w];
+      const std::size_t w = weight_[c];
+      const double sum = scale_[c] * work.exact[c];
+      const double mean = work.records.reference[c] * scale_[w] * work.exact[w];
       work.again.push_back({c, offset, sum + mean});
     }
   }

@@ -45,7 +45,12 @@ class FastLeafSplat {
         buckets_(buckets),
         records_(records),
         channels_(records.channels()),
-        cutoff_(kernel.cutoff() / lattice.voxel()) {}
+        cutoff_(kernel.cutoff() / lattice.voxel()) {
+    for (std::size_t c = 0; c < channels_; ++c) {
+      scale_.push_back(records.scale(c));
+      weight_.push_back(records.weight(c));
+    }
+  }
 
   /// The sums of one leaf, [channel][offset], 0 where inactive; they lie in `work`.
   const double* run(const Coord& origin, const LeafMask& active, LeafWork& work) const;
@@ -68,7 +73,9 @@ class FastLeafSplat {
   const Buckets& buckets_;
   const RecordSource& records_;
   std::size_t channels_;
-  double cutoff_;  ///< in voxels
+  double cutoff_;              ///< in voxels
+  std::vector<double> scale_;  ///< of each channel, as the records have them
+  std::vector<std::size_t> weight_;
 };
 
 }  // namespace grainvdb

@@ -49,13 +49,12 @@ std::shared_ptr<const Topology> particle_topology(const Lattice& lattice, const 
     LeafMask perhaps;
     // Within the material the particles of a leaf alone cover it.
     gather_own(buckets, leaves[l], cutoff, work.candidates);
-    cover(work.candidates, static_cast<float>(1 / cutoff), work.near, inside, perhaps);
+    cover_some(work.candidates, static_cast<float>(1 / cutoff), inside);
     if (holds(inside, stored)) {
       masks[l] = stored;
       return;
     }
     gather_candidates(buckets, leaves[l], cutoff, work.candidates);
-    inside = perhaps = {};
     cover(work.candidates, static_cast<float>(1 / cutoff), work.near, inside, perhaps);
     for (std::size_t w = 0; w < stored.words.size(); ++w) {
       masks[l].words[w] = inside.words[w] & stored.words[w];
