@@ -6,7 +6,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def pages():
-    return [page for pattern in ("*.md", "docs/*.md", "sample_dumps/**/*.md", "pipelines/*.md") for page in ROOT.glob(pattern)]
+    return [page for pattern in ("*.md", "docs/*.md", "sample_dumps/**/*.md", "tests/**/*.md") for page in ROOT.glob(pattern)]
 
 
 def anchor(heading):
