@@ -138,9 +138,29 @@ std::vector<std::int32_t> ParticleStore::places() const {
   return result;
 }
 
-double ParticleStore::top() {
+// A particle is at most a share of the skin outside of its cell, and so in the next layer at the farthest.
+bool ParticleStore::reaches(double height) {
   while (layers_in_use_ > 0 && layer_counts_[layers_in_use_ - 1] == 0) --layers_in_use_;
-  return layers_in_use_ == 0 ? box_.lo[2] : origin_[2] + static_cast<double>(layers_in_use_) * cells_.edge[2];
+  if (layers_in_use_ == 0) return height < box_.lo[2];
+  const auto is_below = [&](std::size_t layers) {
+    return height < origin_[2] + static_cast<double>(layers) * cells_.edge[2];
+  };
+  if (is_below(layers_in_use_ - 1)) return true;
+  if (!is_below(layers_in_use_ + 1)) return false;
+  const std::size_t lowest = is_below(layers_in_use_) ? layers_in_use_ - 1 : layers_in_use_;
+  if (holds_above(high_, lowest)) return true;
+  const auto found = find_above(lowest);
+  if (found) high_ = *found;
+  return found.has_value();
+}
+
+// A particle in that layer or higher, of those in the two highest layers of cells.
+std::optional<std::int32_t> ParticleStore::find_above(std::size_t layer) const {
+  const std::size_t layers = layer_counts_.size(), first = std::max<std::size_t>(layers_in_use_, 2) - 2;
+  for (std::size_t column = 0; column < rows_.size(); column += layers)
+    for (std::size_t i = (column + first) * cells_.capacity; i < (column + layers_in_use_) * cells_.capacity; ++i)
+      if (holds_above(static_cast<std::int32_t>(i), layer)) return static_cast<std::int32_t>(i);
+  return std::nullopt;
 }
 
 std::span<const std::int32_t> ParticleStore::find(const Site& centre, double radius) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -77,8 +78,9 @@ class ParticleStore {
   Site site_at(const Vec3& x) const;
   /// The places that hold particles.
   std::vector<std::int32_t> places() const;
-  /// Upper end of the highest layer of cells that holds a particle; the lower end of the box when there is none.
-  double top();
+  /// Whether that height is below the upper end of the highest layer of cells in which there is a particle; of the
+  /// box's lower end when there is none. By where particles are, whatever cells they were put in.
+  bool reaches(double height);
 
   /// The places of the particles within a ball. Valid until the next call.
   std::span<const std::int32_t> find(const Site& centre, double radius);
@@ -119,6 +121,9 @@ class ParticleStore {
   void make_cells();
   Passage passage(const Site& centre, double radius, const Site& displacement) const;
   std::size_t cell_at(const Site& site) const;
+  std::size_t layer_at(const Site& site) const { return cell_at(site) % layer_counts_.size(); }
+  bool holds_above(std::int32_t i, std::size_t layer) const { return holds(i) && layer_at(site(i)) >= layer; }
+  std::optional<std::int32_t> find_above(std::size_t layer) const;
   Lists output();
   void fill(std::vector<Mover> particles);
   void resize_places();
@@ -142,6 +147,7 @@ class ParticleStore {
   std::vector<std::int32_t> rows_, layer_counts_;
   std::vector<Site> middles_;
   std::size_t layers_in_use_ = 0;  ///< layers of cells above these hold nothing
+  std::int32_t high_ = 0;          ///< the place of a particle that was high up when one was last looked for
   NearLists near_;
   Ball ball_;
   std::vector<std::int32_t> found_, away_, marked_, zone_, renewed_;

@@ -173,11 +173,15 @@ void SpotModel::remove_spot(std::size_t k) {
   next_ = draw_event();
 }
 
+bool SpotModel::is_above_packing(const Vec3& spot) {
+  const Box& box = container_.box;
+  // Grains that hang in the orifice when all others have gone still meet spots.
+  return !box.periodic[2] && spot[2] >= box.lo[2] + particles_.diameter() && !particles_.reaches(spot[2]);
+}
+
 void SpotModel::step_spot(std::size_t k, const Vec3& drawn) {
   Vec3& spot = spots_[k];
-  // Grains that hang in the orifice when all others have gone still meet spots.
-  const double top = std::max(particles_.top(), container_.box.lo[2] + particles_.diameter());
-  if (!container_.box.periodic[2] && spot[2] >= top) return remove_spot(k);
+  if (is_above_packing(spot)) return remove_spot(k);
   const std::optional<Vec3> step = parameters_.bias ? biased_step(spot) : kept_inside(spot, drawn);
   if (!step) return remove_spot(k);
   const Vec3 centre = middle_of(spot, *step);

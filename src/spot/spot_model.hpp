@@ -95,6 +95,7 @@ class SpotModel {
   void next_event();
   void insert_spot();
   void step_spot(std::size_t k, const Vec3& drawn);
+  bool is_above_packing(const Vec3& spot);
   void remove_spot(std::size_t k);
   static Vec3 middle_of(const Vec3& spot, const Vec3& step);
   double influence_at(const Site& centre);

@@ -96,7 +96,7 @@ TEST(SpotPacking, WithRelaxationHardlyAnythingOverlaps) {
 // Bounds of the closest pair are measured: 0.985 and 0.894 d.
 TEST(SpotPacking, LongerStepsWithRelaxationOverlapLittle) {
   const Box box{{-9, 0, 0}, {9, 8, 14}, {false, true, false}};
-  spot::SpotParameters p = published_spots();
+  spot::SpotParameters p = spot::published_spots();
   p.insertion_rate = 200;
   p.step = {1.352, 1.352, 0.4};
   p.hop_rate = 7;

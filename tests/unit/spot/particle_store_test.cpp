@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <map>
 #include <set>
 
@@ -104,6 +105,36 @@ TEST(ParticleStore, ListsOnRequestAreThoseOfTheZone) {
     store.move_zone(std::vector<Site>(store.zone().size()));
     for (const std::int32_t i : store.places()) EXPECT_EQ(store.site(i).mark, 0);
   }
+}
+
+// Where the packing ends is told by where particles are, whatever keeps account of them, and to the height of a cell.
+TEST(ParticleStore, TopOfThePackingDoesNotDependOnLists) {
+  const Box box{{0, 0, 0}, {8, 8, 12}, {true, true, false}};
+  Packing packing = poisson_packing({{0, 0, 0}, {8, 8, 6}, {true, true, false}}, 0.1, 1, 13);
+  std::deque<ParticleStore> stores;  // which moves none
+  for (const auto neighbours : every_kind) stores.emplace_back(box, packing, neighbours);
+  stores.emplace_back(box, packing, ParticleStore::Neighbours::listed, Floor{}, 0.5);
+  testing::Random random(14);
+  std::size_t reached = 0;
+  for (int round = 0; round < 4000; ++round) {
+    const Vec3 centre{random.uniform(0, 8), random.uniform(0, 8), random.uniform(4, 9)};
+    const double way = random.uniform(-0.12, 0.1);
+    Site step;
+    step.at[2] = static_cast<std::int32_t>(way / stores[0].unit()[2]);
+    for (ParticleStore& store : stores) store.move_within(store.site_at(centre), 1.5, step);
+    double highest = 0;
+    for (const std::int32_t i : stores[0].places()) highest = std::max(highest, stores[0].position(i)[2]);
+    for (const double above : {-2.5, -1.5, -0.5, 0.5, 1.5}) {
+      const bool reaches = stores[0].reaches(highest + above);
+      reached += reaches ? 1 : 0;
+      for (ParticleStore& store : stores) EXPECT_EQ(store.reaches(highest + above), reaches) << round << ' ' << above;
+      if (above < 0) {
+        EXPECT_TRUE(reaches);
+      }
+    }
+    EXPECT_FALSE(stores[0].reaches(highest + 2.01));  // cells are 2 high
+  }
+  EXPECT_GT(reached, 3 * 4000U + 500);
 }
 
 // Where particles are by their ids, kept beside the store in the plainest way.
