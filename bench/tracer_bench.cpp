@@ -11,6 +11,7 @@
 #include <benchmark/benchmark.h>
 
 #include "check.hpp"
+#include "grainvdb/grids.hpp"
 #include "grainvdb/tracers.hpp"
 #include "library_paths.hpp"
 #include "scene.hpp"
@@ -56,9 +57,9 @@ struct Case {
     SparseField field({"velocity", "1", 3, "", "", std::numeric_limits<float>::quiet_NaN()}, topology, setting.lattice);
     for (std::size_t l = 0; l < topology->leaf_count(); ++l) {
       const Coord& o = topology->origin(l);
-      const auto* weight = sums[0]->tree().probeConstLeaf({o.x, o.y, o.z});
+      const auto* weight = sums[0]->tree().probeConstLeaf(grid_index(o));
       for (int c = 0; c < 3; ++c) {
-        const auto* momentum = sums[static_cast<std::size_t>(c) + 1]->tree().probeConstLeaf({o.x, o.y, o.z});
+        const auto* momentum = sums[static_cast<std::size_t>(c) + 1]->tree().probeConstLeaf(grid_index(o));
         topology->mask(l).for_each([&](int v) {
           const auto at = static_cast<openvdb::Index>(v);
           field.leaf(l, c)[v] = momentum->getValue(at) / weight->getValue(at);
