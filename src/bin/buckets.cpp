@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "grainvdb/topology.hpp"
@@ -196,18 +197,22 @@ Order by_cell(const Unsorted& all) {
   return order;
 }
 
-// Fills in where the eighths of the cells begin.
-void find_eighths(Buckets& b) {
-  b.eighth.assign(8 * b.cells.size() + 1, b.point.size());
-  parallel_for(b.cells.size(), [&](std::size_t i) {
-    std::array<std::size_t, 8> count{};
-    for (std::size_t e = b.start[i]; e < b.start[i + 1]; ++e) {
-      const auto upper = [&](std::size_t a) { return (static_cast<std::uint32_t>(voxel(b.index[a][e])) >> 2U) & 1U; };
-      ++count[4 * upper(0) + 2 * upper(1) + upper(2)];
+// Fills in the cells of entries that are in their order, and where cells and their eighths begin.
+Buckets with_cells(Buckets b) {
+  const std::size_t entries = b.point.size();
+  for (std::size_t k = 0; k < entries; ++k) {
+    const Coord at{voxel(b.index[0][k]), voxel(b.index[1][k]), voxel(b.index[2][k])};
+    if (const Coord c = leaf_origin(at); b.cells.empty() || c != b.cells.back()) {
+      b.cells.push_back(c);
+      b.start.push_back(k);
     }
-    std::size_t begin = b.start[i];
-    for (std::size_t n = 0; n < 8; begin += count[n++]) b.eighth[8 * i + n] = begin;
-  });
+    const auto upper = [](std::int32_t x) { return (static_cast<std::uint32_t>(x) >> 2U) & 1U; };
+    const std::size_t eighth = 8 * (b.cells.size() - 1) + 4 * upper(at.x) + 2 * upper(at.y) + upper(at.z);
+    while (b.eighth.size() <= eighth) b.eighth.push_back(k);
+  }
+  b.start.push_back(entries);
+  b.eighth.resize(8 * b.cells.size() + 1, entries);
+  return b;
 }
 
 }  // namespace
@@ -216,17 +221,15 @@ Buckets bin_points(const Lattice& lattice, const Columns3& position, double reac
   if (!(reach >= 0) || !std::isfinite(reach)) throw std::invalid_argument("the reach must be finite and not negative");
   if (position[0].size() > std::numeric_limits<std::uint32_t>::max()) throw std::invalid_argument("too many points");
 
-  Buckets b;
-  b.start.push_back(0);
-  b.eighth.push_back(0);
-  if (position[0].empty()) return b;
+  if (position[0].empty()) return with_cells({});
   const double voxels = reach / lattice.voxel();
   const std::optional<Region> cells = wanted == nullptr ? std::nullopt : std::optional(wanted->grown(voxels));
   const Unsorted all = all_images({lattice, position, voxels, cells}, position[0].size());
   const std::size_t entries = all.count;
-  if (entries == 0) return b;
+  if (entries == 0) return with_cells({});
   const Order order = by_cell(all);
 
+  Buckets b;
   b.point.resize(entries);
   for (auto& column : b.index) column.resize(entries);
   for (auto& column : b.local) column.resize(entries + Buckets::padding);
@@ -240,15 +243,7 @@ Buckets bin_points(const Lattice& lattice, const Columns3& position, double reac
       b.local[a][k] = static_cast<float>(image.index[a] - (cell(image.index[a]) + 3.5));
     }
   });
-  for (std::size_t k = 0; k < entries; ++k) {
-    const Coord c{cell(b.index[0][k]), cell(b.index[1][k]), cell(b.index[2][k])};
-    if (k > 0 && c == b.cells.back()) continue;
-    b.cells.push_back(c);
-    if (k > 0) b.start.push_back(k);
-  }
-  b.start.push_back(entries);
-  find_eighths(b);
-  return b;
+  return with_cells(std::move(b));
 }
 
 Buckets keep_points(const Buckets& all, std::span<const int> number, int wanted) {
@@ -257,24 +252,17 @@ Buckets keep_points(const Buckets& all, std::span<const int> number, int wanted)
   for (std::size_t p = 0; p < number.size(); ++p)
     if (number[p] == wanted) place[p] = kept++;
   Buckets some;
-  some.start.push_back(0);
-  for (std::size_t cell = 0; cell < all.cells.size(); ++cell) {
-    for (std::size_t e = all.start[cell]; e < all.start[cell + 1]; ++e) {
-      const std::uint32_t p = all.point[e];
-      if (number[p] != wanted) continue;
-      some.point.push_back(place[p]);
-      for (std::size_t a = 0; a < 3; ++a) {
-        some.index[a].push_back(all.index[a][e]);
-        some.local[a].push_back(all.local[a][e]);
-      }
+  for (std::size_t e = 0; e < all.point.size(); ++e) {
+    const std::uint32_t p = all.point[e];
+    if (number[p] != wanted) continue;
+    some.point.push_back(place[p]);
+    for (std::size_t a = 0; a < 3; ++a) {
+      some.index[a].push_back(all.index[a][e]);
+      some.local[a].push_back(all.local[a][e]);
     }
-    if (some.point.size() == some.start.back()) continue;
-    some.cells.push_back(all.cells[cell]);
-    some.start.push_back(some.point.size());
   }
   for (auto& column : some.local) column.resize(some.point.size() + Buckets::padding);
-  find_eighths(some);
-  return some;
+  return with_cells(std::move(some));
 }
 
 }  // namespace grainvdb

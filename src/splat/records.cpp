@@ -192,8 +192,10 @@ Rows rows_of(const Buckets& buckets, std::size_t cell, std::span<const double> q
   const auto row = [&](std::size_t k) { return q.data() + buckets.point[begin + k] * channels; };
   to.resize(count * stride);
   for (std::size_t k = 0; k < count; ++k) {
-    if (k + ahead < count)
+    if (k + ahead < count) {
       for (std::size_t c = 0; c < channels; c += line) __builtin_prefetch(row(k + ahead) + c);
+      __builtin_prefetch(row(k + ahead) + channels - 1);
+    }
     // By hand: rows are too short for the calls that library functions make.
     double* const copy = to.data() + k * stride;
     for (std::size_t c = 0; c < channels; ++c) copy[c] = row(k)[c];
