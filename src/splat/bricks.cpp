@@ -8,6 +8,7 @@
 //
 #include <hwy/highway.h>
 //
+#include "splat/blocks-inl.hpp"
 #include "splat/doubt-inl.hpp"
 #include "splat/particle_bricks-inl.hpp"
 
@@ -32,59 +33,6 @@ HWY_INLINE void for_each_brick(const VoxelBox& box, const F& f) {
   for (int x = 0; x < block; x += B::x)
     for (int y = 0; y < block; y += B::y)
       for (int z = 0; z < block; z += B::z) f(n++, VoxelBox{box.x + x, box.y + y, box.z + z});
-}
-
-/// Squared distances along one axis from parts of `size` voxels, one after the other.
-template <int size, int parts>
-struct Beyond {
-  static constexpr int count = parts;
-  Beyond(int first, float h) {
-    const float half = 0.5F * h * static_cast<float>(size - 1);
-    reach = hn::Set(d, half);
-    for (int b = 0; b < count; ++b) middle[b] = hn::Set(d, h * (static_cast<float>(first + b * size) - 3.5F) + half);
-  }
-  HWY_INLINE void operator()(V x, V* squared) const {
-    for (int b = 0; b < count; ++b) {
-      const V beyond = hn::Max(hn::Sub(hn::Abs(hn::Sub(x, middle[b])), reach), hn::Zero(d));
-      squared[b] = hn::Mul(beyond, beyond);
-    }
-  }
-  V reach;
-  V middle[count];
-};
-
-/// The candidates of all blocks of a leaf. Distances along one axis are the same for four of them.
-HWY_NOINLINE void pick_blocks(const LeafCandidates& all, float h, std::array<Picked, LeafSums::blocks>& out) {
-  const Beyond<block, 2> along(0, h);
-  float *x[LeafSums::blocks], *y[LeafSums::blocks], *z[LeafSums::blocks];
-  std::int32_t* at[LeafSums::blocks];
-  for (std::size_t b = 0; b < LeafSums::blocks; ++b) {
-    x[b] = out[b].x.room(all.count);
-    y[b] = out[b].y.room(all.count);
-    z[b] = out[b].z.room(all.count);
-    at[b] = out[b].at.room(all.count);
-    out[b].count = 0;
-  }
-  const V limit = hn::Set(d, 1 + margin);
-  auto place = hn::Iota(di, 0);
-  for (std::size_t i = 0; i < all.count; i += lanes, place = hn::Add(place, hn::Set(di, lanes))) {
-    const Voxels v{hn::Load(d, all.x.data() + i), hn::Load(d, all.y.data() + i), hn::Load(d, all.z.data() + i)};
-    const auto valid = hn::FirstN(d, all.count - i);
-    V dx[2], dy[2], dz[2];
-    along(v.x, dx);
-    along(v.y, dy);
-    along(v.z, dz);
-    for (std::size_t b = 0; b < LeafSums::blocks; ++b) {
-      const V r2 = hn::Add(hn::Add(dx[b / 4], dy[b / 2 % 2]), dz[b % 2]);
-      const auto near = hn::And(hn::Lt(r2, limit), valid);
-      if (hn::AllFalse(d, near)) continue;
-      const std::size_t n = out[b].count;
-      store_some(v.x, near, d, x[b] + n);
-      store_some(v.y, near, d, y[b] + n);
-      store_some(v.z, near, d, z[b] + n);
-      out[b].count += store_some(place, hn::RebindMask(di, near), di, at[b] + n);
-    }
-  }
 }
 
 /// The candidates of every brick of a block: places in the leaf's list, as many more as weigh_and_sum looks ahead.

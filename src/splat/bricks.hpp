@@ -55,9 +55,8 @@ struct LeafSums {
   /// The first row is Σ (1-r)³(1+3r)/3 over the candidates, the others are Σ q (1-r)³(1+3r)/3 for each channel.
   BrickSums sums;
 
-  static constexpr std::size_t blocks = 8;             ///< of 4³ voxels
   static constexpr std::size_t most_bricks = 64;       ///< of a block
-  std::array<Picked, blocks> near;                     ///< candidates of each block
+  NearBlocks near;                                     ///< candidates of each block
   std::array<Grow<std::int32_t>, most_bricks> chosen;  ///< those of them that reach each brick
   Grow<float> weights;                                 ///< [candidate of the brick][lane]
   Grow<float> nearest, few;                            ///< of each channel, for a brick that seems doubtful

@@ -10,6 +10,7 @@
 //
 #include <hwy/highway.h>
 //
+#include "splat/blocks-inl.hpp"
 #include "splat/bricks-inl.hpp"
 
 #ifndef GRAINVDB_SPLAT_CELL_SCAN
@@ -125,14 +126,13 @@ void CoverSome(const LeafCandidates& all, float h, LeafMask& inside) {
   });
 }
 
-void Cover(const LeafCandidates& all, float h, Picked& near, LeafMask& inside, LeafMask& perhaps) {
+void Cover(const LeafCandidates& all, float h, NearBlocks& blocks, LeafMask& inside, LeafMask& perhaps) {
   const V sure = hn::Set(d, 1 - margin), possible = hn::Set(d, 1 + margin);
-  for (int b = 0; b < 8; ++b) {
+  pick_blocks(all, h, blocks);
+  for (int b = 0; b < static_cast<int>(leaf_eighths); ++b) {
     const VoxelBox box{b / 4 * block, b / 2 % 2 * block, b % 2 * block, block};
-    bool picked = false;
+    const Picked& near = blocks[static_cast<std::size_t>(b)];
     for_each_open_brick(box, inside, [&](const VoxelBox& brick) HWY_ATTR {
-      if (!picked) PickNear(all, box, h, near);
-      picked = true;
       const V least = NearestTo(near.x.data(), near.y.data(), near.z.data(), near.count, near.count / 2, near.count,
                                 brick_voxels(brick, h));
       set_brick_bits(inside, brick, bits_of(d, hn::Lt(least, sure)));
@@ -230,7 +230,7 @@ void cover_some(const LeafCandidates& candidates, float voxel, LeafMask& inside)
   HWY_DYNAMIC_DISPATCH(CoverSome)(candidates, voxel, inside);
 }
 
-void cover(const LeafCandidates& candidates, float voxel, Picked& scratch, LeafMask& inside, LeafMask& perhaps) {
+void cover(const LeafCandidates& candidates, float voxel, NearBlocks& scratch, LeafMask& inside, LeafMask& perhaps) {
   HWY_DYNAMIC_DISPATCH(Cover)(candidates, voxel, scratch, inside, perhaps);
 }
 

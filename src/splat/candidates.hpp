@@ -1,5 +1,6 @@
 #pragma once
 /// The entries whose support can touch a leaf, as the vector kernels read them.
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -44,6 +45,10 @@ struct Picked {
   std::size_t count = 0;
 };
 
+/// Those near each block of 4³ voxels of a leaf, number 4 (x/4) + 2 (y/4) + z/4.
+constexpr std::size_t leaf_eighths = 8;
+using NearBlocks = std::array<Picked, leaf_eighths>;
+
 /// Picks those that may lie within the cutoff of a voxel of the box, in their order.
 void pick_near(const LeafCandidates& candidates, const VoxelBox& box, float voxel, Picked& out);
 
@@ -52,6 +57,6 @@ void pick_near(const LeafCandidates& candidates, const VoxelBox& box, float voxe
 void cover_some(const LeafCandidates& candidates, float voxel, LeafMask& inside);
 
 /// The same for all that do, and to `perhaps` those that may be among them, by the precision of the positions.
-void cover(const LeafCandidates& candidates, float voxel, Picked& scratch, LeafMask& inside, LeafMask& perhaps);
+void cover(const LeafCandidates& candidates, float voxel, NearBlocks& scratch, LeafMask& inside, LeafMask& perhaps);
 
 }  // namespace grainvdb

@@ -10,7 +10,7 @@ namespace {
 
 struct TopologyWork {
   LeafCandidates candidates;
-  Picked near;
+  NearBlocks near;
 };
 
 /// Whether W > 0 at a voxel for any candidate, in double.
