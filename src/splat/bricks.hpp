@@ -59,7 +59,7 @@ struct LeafSums {
   NearBlocks near;                                     ///< candidates of each block
   std::array<Grow<std::int32_t>, most_bricks> chosen;  ///< those of them that reach each brick
   Grow<float> weights;                                 ///< [candidate of the brick][lane]
-  Grow<float> nearest, few;                            ///< of each channel, for a brick that seems doubtful
+  Grow<float> largest, few;                            ///< of each channel, for a brick that seems doubtful
   Grow<std::uint32_t> doubt;                           ///< of each channel
 };
 

@@ -32,7 +32,7 @@ constexpr double faint = 1e-3;
 /// small (Σ W - n W(0)) max |q|.
 constexpr double small = 1e-2;
 
-/// The largest |value| of each channel among some candidates, or how many are smaller than `small` times that.
+/// The largest |value| of each channel among some candidates, and how many are smaller than `small` times that.
 template <class Tag>
 HWY_INLINE void largest_of(Tag tag, const float* HWY_RESTRICT values, std::size_t stride,
                            const std::int32_t* HWY_RESTRICT chosen, std::size_t count, float* HWY_RESTRICT largest,
@@ -60,7 +60,7 @@ HWY_NOINLINE void find_doubt(const LeafSplat& leaf, const std::int32_t* HWY_REST
   const hn::CappedTag<float, 4> part;  // records are padded to four
   constexpr int width = Brick<Tag>::lanes;
   const auto channels = static_cast<std::size_t>(leaf.channels);
-  float* const largest = out.nearest.room(leaf.stride);
+  float* const largest = out.largest.room(leaf.stride);
   float* const few = out.few.room(leaf.stride);
   std::size_t first = 0;
   for (; first + lanes <= leaf.stride; first += lanes)
