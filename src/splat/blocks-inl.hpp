@@ -6,7 +6,6 @@
 #define GRAINVDB_SPLAT_BLOCKS_INL_HPP
 #endif
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -39,11 +38,11 @@ struct Beyond {
 };
 
 /// The candidates of all blocks of a leaf. Distances along one axis are the same for four of them.
-inline HWY_NOINLINE void pick_blocks(const LeafCandidates& all, float h, std::array<Picked, leaf_eighths>& out) {
+inline HWY_NOINLINE void pick_blocks(const LeafCandidates& all, float h, NearBlocks& out) {
   const Beyond<block, 2> along(0, h);
-  float *x[leaf_eighths], *y[leaf_eighths], *z[leaf_eighths];
-  std::int32_t* at[leaf_eighths];
-  for (std::size_t b = 0; b < leaf_eighths; ++b) {
+  float *x[leaf_blocks], *y[leaf_blocks], *z[leaf_blocks];
+  std::int32_t* at[leaf_blocks];
+  for (std::size_t b = 0; b < out.size(); ++b) {
     x[b] = out[b].x.room(all.count);
     y[b] = out[b].y.room(all.count);
     z[b] = out[b].z.room(all.count);
@@ -59,7 +58,7 @@ inline HWY_NOINLINE void pick_blocks(const LeafCandidates& all, float h, std::ar
     along(v.x, dx);
     along(v.y, dy);
     along(v.z, dz);
-    for (std::size_t b = 0; b < leaf_eighths; ++b) {
+    for (std::size_t b = 0; b < out.size(); ++b) {
       const V r2 = hn::Add(hn::Add(dx[b / 4], dy[b / 2 % 2]), dz[b % 2]);
       const auto near = hn::And(hn::Lt(r2, limit), valid);
       if (hn::AllFalse(d, near)) continue;

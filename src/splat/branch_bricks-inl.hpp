@@ -87,13 +87,8 @@ HWY_INLINE CentredBox centres_of(const VoxelBox& first, int nx, int ny, int nz, 
 
 /// Calls f for the bricks of a leaf, those of one block after another.
 template <class F>
-HWY_INLINE void for_each_brick(F&& f) {
-  for (int b = 0; b < leaf_blocks; ++b) {
-    const int bx = b / 4 * block, by = b / 2 % 2 * block, bz = b % 2 * block;
-    for (int x = bx; x < bx + block; x += brick_x)
-      for (int y = by; y < by + block; y += brick_y)
-        for (int z = bz; z < bz + block; z += brick_z) f(VoxelBox{x, y, z});
-  }
+HWY_INLINE void for_each_brick_of_leaf(const F& f) {
+  for (int b = 0; b < leaf_blocks; ++b) for_each_brick(block_box(b), f);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -68,6 +68,20 @@ HWY_INLINE Voxels brick_voxels(const VoxelBox& brick, float h) {
   return brick_voxels_of(d, brick, h);
 }
 
+/// A block by its number.
+constexpr VoxelBox block_box(int number) {
+  return {number / 4 * block, number / 2 % 2 * block, number % 2 * block, block};
+}
+
+/// Calls f for the bricks of a box, in ascending order of x, y, z.
+template <class Tag = D, class F>
+HWY_INLINE void for_each_brick(const VoxelBox& box, const F& f) {
+  using B = Brick<Tag>;
+  for (int x = box.x; x < box.x + box.edge; x += B::x)
+    for (int y = box.y; y < box.y + box.edge; y += B::y)
+      for (int z = box.z; z < box.z + box.edge; z += B::z) f(VoxelBox{x, y, z});
+}
+
 /// The bits of a brick's voxels in a mask, lane by lane, and back.
 template <class Tag = D>
 HWY_INLINE std::uint32_t brick_bits(const LeafMask& mask, const VoxelBox& brick) {

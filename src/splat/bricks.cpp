@@ -25,17 +25,8 @@ bool any_active(const LeafMask& active, const VoxelBox& box) {
   return any != 0;
 }
 
-/// The bricks of a block, in the order of the lists of their candidates.
-template <class Tag, class F>
-HWY_INLINE void for_each_brick(const VoxelBox& box, const F& f) {
-  using B = Brick<Tag>;
-  std::size_t n = 0;
-  for (int x = 0; x < block; x += B::x)
-    for (int y = 0; y < block; y += B::y)
-      for (int z = 0; z < block; z += B::z) f(n++, VoxelBox{box.x + x, box.y + y, box.z + z});
-}
-
-/// The candidates of every brick of a block: places in the leaf's list, as many more as weigh_and_sum looks ahead.
+/// The candidates of every brick of a block, in the order of for_each_brick: places in the leaf's list, as many more as
+/// weigh_and_sum looks ahead.
 template <class Tag>
 HWY_NOINLINE void pick_bricks(const Picked& near, const VoxelBox& box, float h,
                               std::array<Grow<std::int32_t>, LeafSums::most_bricks>& lists, std::size_t* counts) {
@@ -104,24 +95,23 @@ void SplatBlocks(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {
   const LeafCandidates& all = *leaf.candidates;
   const Sources from{all.x.data(), all.y.data(), all.z.data(), leaf.values, leaf.stride};
   pick_blocks(all, leaf.voxel, out.near);
-  std::size_t eighth = 0;
-  for (int bx = 0; bx < 8; bx += block)
-    for (int by = 0; by < 8; by += block)
-      for (int bz = 0; bz < 8; bz += block, ++eighth) {
-        const VoxelBox box{bx, by, bz, block};
-        ask_for(leaf.to, static_cast<int>(eighth));
-        if (!any_active(active, box)) continue;
-        std::size_t counts[LeafSums::most_bricks];
-        pick_bricks<Tag>(out.near[eighth], box, leaf.voxel, out.chosen, counts);
-        for_each_brick<Tag>(box, [&](std::size_t b, const VoxelBox& brick) {
-          const std::uint32_t lanes_active = brick_bits<Tag>(active, brick);
-          if (lanes_active == 0) return;
-          float* const of_brick = sums + brick_number<Tag>(brick) * static_cast<std::size_t>(rows * B::lanes);
-          const std::int32_t* const chosen = out.chosen[b].data();
-          SumBrick<Tag>(leaf, from, chosen, counts[b], brick, out.weights, of_brick);
-          if (leaf.doubtful != nullptr) report_doubt<Tag>(leaf, chosen, counts[b], brick, of_brick, lanes_active, out);
-        });
-      }
+  for (int b = 0; b < leaf_blocks; ++b) {
+    const VoxelBox box = block_box(b);
+    ask_for(leaf.to, b);
+    if (!any_active(active, box)) continue;
+    std::size_t counts[LeafSums::most_bricks];
+    pick_bricks<Tag>(out.near[static_cast<std::size_t>(b)], box, leaf.voxel, out.chosen, counts);
+    std::size_t list = 0;
+    for_each_brick<Tag>(box, [&](const VoxelBox& brick) {
+      const std::size_t count = counts[list];
+      const std::int32_t* const chosen = out.chosen[list++].data();
+      const std::uint32_t lanes_active = brick_bits<Tag>(active, brick);
+      if (lanes_active == 0) return;
+      float* const of_brick = sums + brick_number<Tag>(brick) * static_cast<std::size_t>(rows * B::lanes);
+      SumBrick<Tag>(leaf, from, chosen, count, brick, out.weights, of_brick);
+      if (leaf.doubtful != nullptr) report_doubt<Tag>(leaf, chosen, count, brick, of_brick, lanes_active, out);
+    });
+  }
 }
 
 void SplatLeaf(const LeafSplat& leaf, const LeafMask& active, LeafSums& out) {

@@ -17,7 +17,7 @@
 #define GRAINVDB_SPLAT_CELL_SCAN
 namespace grainvdb {
 
-// A cell's entries, and how their positions become those of candidates: x = local · scale + offset.
+// Some of a cell's entries, and how their positions become those of candidates: x = local · scale + offset.
 struct CellScan {
   const float *x, *y, *z;
   std::size_t count;
@@ -105,13 +105,12 @@ V NearestTo(const float* HWY_RESTRICT x, const float* HWY_RESTRICT y, const floa
 /// All lanes of a brick as bits.
 constexpr std::uint32_t whole_brick = (1U << lanes) - 1U;
 
-/// Calls f for the bricks of a block that are not inside altogether.
+/// Calls f for the bricks of a box that are not inside altogether.
 template <class F>
 HWY_INLINE void for_each_open_brick(const VoxelBox& box, const LeafMask& inside, const F& f) {
-  for (int x = box.x; x < box.x + box.edge; x += brick_x)
-    for (int y = box.y; y < box.y + box.edge; y += brick_y)
-      for (int z = box.z; z < box.z + box.edge; z += brick_z)
-        if (brick_bits(inside, {x, y, z}) != whole_brick) f(VoxelBox{x, y, z});
+  for_each_brick(box, [&](const VoxelBox& brick) HWY_ATTR {
+    if (brick_bits(inside, brick) != whole_brick) f(brick);
+  });
 }
 
 /// The candidates in the middle of the list lie in the leaf's own cell or near it: they cover most bricks of a leaf
@@ -129,10 +128,9 @@ void CoverSome(const LeafCandidates& all, float h, LeafMask& inside) {
 void Cover(const LeafCandidates& all, float h, NearBlocks& blocks, LeafMask& inside, LeafMask& perhaps) {
   const V sure = hn::Set(d, 1 - margin), possible = hn::Set(d, 1 + margin);
   pick_blocks(all, h, blocks);
-  for (int b = 0; b < static_cast<int>(leaf_eighths); ++b) {
-    const VoxelBox box{b / 4 * block, b / 2 % 2 * block, b % 2 * block, block};
+  for (int b = 0; b < leaf_blocks; ++b) {
     const Picked& near = blocks[static_cast<std::size_t>(b)];
-    for_each_open_brick(box, inside, [&](const VoxelBox& brick) HWY_ATTR {
+    for_each_open_brick(block_box(b), inside, [&](const VoxelBox& brick) HWY_ATTR {
       const V least = NearestTo(near.x.data(), near.y.data(), near.z.data(), near.count, near.count / 2, near.count,
                                 brick_voxels(brick, h));
       set_brick_bits(inside, brick, bits_of(d, hn::Lt(least, sure)));
@@ -166,8 +164,18 @@ bool in_reach(const Coord& cell, std::size_t eighth, const Coord& leaf, double c
   return apart2 <= cutoff * cutoff * (1 + 1e-5);  // more than the margin of single precision
 }
 
-// Of so few entries it takes longer to leave some out.
-constexpr std::size_t few_in_cell = 128;
+// Calls f(first, end) for the runs of a cell's entries whose eighths may be in reach of a leaf.
+template <class F>
+void for_each_run(const Buckets& buckets, std::size_t cell, const Coord& leaf, double cutoff, const F& f) {
+  constexpr std::size_t few = 128;  // of so few entries it takes longer to leave some out
+  const std::size_t* const eighth = buckets.eighth.data() + 8 * cell;
+  if (eighth[8] - eighth[0] < few) return f(eighth[0], eighth[8]);
+  for (std::size_t n = 0; n < 8; ++n) {
+    const std::size_t first = n;
+    while (n < 8 && in_reach(buckets.cells[cell], n, leaf, cutoff)) ++n;
+    if (eighth[first] < eighth[n]) f(eighth[first], eighth[n]);
+  }
+}
 
 // Scans the cells listed in `out`; those without candidates are dropped.
 void scan_cells(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCandidates& out) {
@@ -179,32 +187,20 @@ void scan_cells(const Buckets& buckets, const Coord& leaf, double cutoff, LeafCa
   out.z.room(most);
   out.entry.room(most);
   const auto half = static_cast<float>(3.5 / cutoff);
+  const auto& [x, y, z] = buckets.local;
   for (CellRange& range : out.cells) {
-    const Coord& origin = buckets.cells[range.cell];
-    CellScan scan{};
-    scan.scale = static_cast<float>(1 / cutoff);
-    for (int a = 0; a < 3; ++a) scan.offset[a] = static_cast<float>((origin[a] - leaf[a]) / cutoff);
-    const auto scan_from = [&](std::size_t first, std::size_t end) {
-      scan.x = buckets.local[0].data() + first;
-      scan.y = buckets.local[1].data() + first;
-      scan.z = buckets.local[2].data() + first;
-      scan.count = end - first;
-      scan.first = static_cast<std::uint32_t>(first);
-      HWY_DYNAMIC_DISPATCH(ScanCell)(scan, half, out);
-    };
+    const auto from_leaf = [&](int a) { return static_cast<float>((buckets.cells[range.cell][a] - leaf[a]) / cutoff); };
     range.begin = out.count;
-    if (buckets.start[range.cell + 1] - buckets.start[range.cell] < few_in_cell) {
-      scan_from(buckets.start[range.cell], buckets.start[range.cell + 1]);
-      range.end = out.count;
-      continue;
-    }
-    const std::size_t* const eighth = buckets.eighth.data() + 8 * range.cell;
-    for (std::size_t n = 0; n < 8;) {
-      std::size_t end = n;
-      while (end < 8 && in_reach(origin, end, leaf, cutoff)) ++end;
-      if (end > n && eighth[n] < eighth[end]) scan_from(eighth[n], eighth[end]);
-      n = end + 1;
-    }
+    for_each_run(buckets, range.cell, leaf, cutoff, [&](std::size_t first, std::size_t end) {
+      const CellScan scan{x.data() + first,
+                          y.data() + first,
+                          z.data() + first,
+                          end - first,
+                          static_cast<std::uint32_t>(first),
+                          static_cast<float>(1 / cutoff),
+                          {from_leaf(0), from_leaf(1), from_leaf(2)}};
+      HWY_DYNAMIC_DISPATCH(ScanCell)(scan, half, out);
+    });
     range.end = out.count;
   }
   std::erase_if(out.cells, [](const CellRange& range) { return range.begin == range.end; });

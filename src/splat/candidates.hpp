@@ -45,9 +45,10 @@ struct Picked {
   std::size_t count = 0;
 };
 
-/// Those near each block of 4³ voxels of a leaf, number 4 (x/4) + 2 (y/4) + z/4.
-constexpr std::size_t leaf_eighths = 8;
-using NearBlocks = std::array<Picked, leaf_eighths>;
+/// Blocks of 4³ voxels in a leaf, numbered 4 (x/4) + 2 (y/4) + z/4.
+inline constexpr int leaf_blocks = 8;
+/// Candidates near each of them.
+using NearBlocks = std::array<Picked, leaf_blocks>;
 
 /// Picks those that may lie within the cutoff of a voxel of the box, in their order.
 void pick_near(const LeafCandidates& candidates, const VoxelBox& box, float voxel, Picked& out);

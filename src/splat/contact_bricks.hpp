@@ -11,6 +11,7 @@
 #include "grainvdb/line_rule.hpp"
 #include "grainvdb/topology.hpp"
 #include "splat/brick_sums.hpp"
+#include "splat/candidates.hpp"
 #include "splat/grow.hpp"
 
 namespace grainvdb {
@@ -74,9 +75,6 @@ void branches_at_voxel(const LeafBranches& leaf, int offset, std::vector<std::in
 /// other bricks are not set.
 void sum_branches(const LeafBranches& leaf, std::span<const BranchClass> classes, int channels, const LeafMask& mask,
                   BranchScratch& scratch, BrickSums& sums);
-
-/// Blocks of 4³ voxels in a leaf, numbered 4 (x/4) + 2 (y/4) + z/4.
-inline constexpr int leaf_blocks = 8;
 
 /// Sums whose magnitude is below faint[block][channel] may have lost their accuracy to rounding at the rims of the
 /// supports; 0 where there are none.

@@ -79,7 +79,7 @@ void ReachOfBranches(const LeafBranches& leaf, const LeafMask& window, BranchScr
   scratch.chosen.resize(leaf.size() + 2 * lanes);
   std::int32_t* const chosen = scratch.chosen.data();
   const V surely = hn::Set(d, 1 - touch), perhaps = hn::Set(d, 1 + touch);
-  for_each_brick([&](const VoxelBox& brick) {
+  for_each_brick_of_leaf([&](const VoxelBox& brick) {
     const std::uint32_t wanted = brick_bits(window, brick);
     std::uint32_t found = brick_bits(mask, brick);
     if ((wanted & ~found) == 0) return;

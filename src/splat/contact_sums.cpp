@@ -145,7 +145,7 @@ void SumBranches(const LeafBranches& leaf, std::span<const BranchClass> classes,
   scratch.chosen.resize(leaf.size() + 2 * lanes);
   scratch.weights.room(chunk * lanes);
   float* const all = out.room(lanes, channels);
-  for_each_brick([&](const VoxelBox& brick) HWY_ATTR {
+  for_each_brick_of_leaf([&](const VoxelBox& brick) HWY_ATTR {
     if (brick_bits(mask, brick) == 0) return;
     float* const sums = all + brick_number(brick) * width * lanes;
     std::fill_n(sums, width * lanes, 0.0F);
@@ -172,7 +172,7 @@ void FaintLimits(const LeafBranches& leaf, int channels, BranchScratch& scratch,
   // least, each weighed as far from it as the voxels go.
   const float farther = 0.5F * leaf.voxel * (block - 1) * std::sqrt(3.0F);
   for (int b = 0; b < leaf_blocks; ++b) {
-    CentredBox box = centres_of({b / 4 * block, b / 2 % 2 * block, b % 2 * block}, block, block, block, leaf.voxel);
+    CentredBox box = centres_of(block_box(b), block, block, block, leaf.voxel);
     std::fill_n(box.half, 3, 0.0F);
     const std::size_t n = farther < 1 ? pick_middles(leaf, box, 1 - farther, scratch.chosen.data()) : 0;
     std::fill_n(certain, width + lanes, 0.0F);

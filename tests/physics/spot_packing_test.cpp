@@ -75,43 +75,43 @@ TEST(SpotPacking, WithoutRelaxationOverlapsBecomeThoseOfRandomPlaces) {
 }
 
 // The published parameters and the published limits: B ≤ 0.002, no pair nearer than 0.99 d.
-TEST(SpotPacking, WithRelaxationHardlyAnythingOverlaps) {
-  const Box box{{-9, 0, 0}, {9, 8, 14}, {false, true, false}};
+/// Published spots but for how many enter.
+spot::SpotParameters some_spots() {
   spot::SpotParameters p = spot::published_spots();
   p.insertion_rate = 200;
+  return p;
+}
+
+/// Drains a silo with a slot of 6 d for a time of 7.5: at no sample does it overlap by more than the published limit,
+/// or have a pair nearer than `least`.
+spot::SpotModel drain_silo(const spot::SpotParameters& p, double least) {
+  const Box box{{-9, 0, 0}, {9, 8, 14}, {false, true, false}};
   spot::SpotModel model({box, spot::Orifice{spot::Orifice::Shape::slot, {0, 0}, 6}},
                         spot::random_packing(box, 0.58, 1, 43), p, 44);
   for (int sample = 1; sample <= 3; ++sample) {
     model.advance(2.5 * sample);
     const Structure s = structure_of(box, places(model, box));
     EXPECT_LT(s.badness, 0.002);
-    EXPECT_GT(s.least, 0.99);
+    EXPECT_GT(s.least, least);
   }
   EXPECT_GT(model.drained().size(), 100U);
-  EXPECT_GT(model.counters().relaxed, 100'000U);
+  return model;
+}
+
+TEST(SpotPacking, WithRelaxationHardlyAnythingOverlaps) {
+  EXPECT_GT(drain_silo(some_spots(), 0.99).counters().relaxed, 100'000U);
 }
 
 // Steps twice as long sideways and four times as high, a quarter as often, make the same flow. Relaxed after each,
 // B stays far below the published limit, but not all pairs at 0.99 d; after every tenth B still keeps to the limit.
 // Bounds of the closest pair are measured: 0.985 and 0.894 d.
 TEST(SpotPacking, LongerStepsWithRelaxationOverlapLittle) {
-  const Box box{{-9, 0, 0}, {9, 8, 14}, {false, true, false}};
-  spot::SpotParameters p = spot::published_spots();
-  p.insertion_rate = 200;
+  spot::SpotParameters p = some_spots();
   p.step = {1.352, 1.352, 0.4};
   p.hop_rate = 7;
-  for (const auto& [every, least] : {std::pair{1, 0.97}, {10, 0.86}}) {
-    p.relaxation.every = every;
-    spot::SpotModel model({box, spot::Orifice{spot::Orifice::Shape::slot, {0, 0}, 6}},
-                          spot::random_packing(box, 0.58, 1, 43), p, 44);
-    for (int sample = 1; sample <= 3; ++sample) {
-      model.advance(2.5 * sample);
-      const Structure s = structure_of(box, places(model, box));
-      EXPECT_LT(s.badness, 0.002);
-      EXPECT_GT(s.least, least);
-    }
-    EXPECT_GT(model.drained().size(), 100U);
-  }
+  drain_silo(p, 0.97);
+  p.relaxation.every = 10;
+  drain_silo(p, 0.86);
 }
 
 /// Variance of the numbers of particles in the 27 cells of a cubic box, over their mean: that of φ in so large a
